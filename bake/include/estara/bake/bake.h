@@ -1,0 +1,63 @@
+// From a mesh and a shader to a TextureGrid, with its error.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "estara/grids/bricks.h"
+#include "estara/grids/texture_grid.h"
+#include "estara/scenes/mesh.h"
+#include "estara/shaders/registry.h"
+
+namespace estara {
+
+/// Told how many voxels more have been shaded; called from several threads.
+using VoxelsDone = std::function<void(std::uint64_t)>;
+
+/// What a bake of a mesh will take, estimated without doing it.
+struct BakeEstimate {
+    std::uint64_t voxels = 0;   ///< active voxels of level 0
+    std::uint64_t bytes = 0;    ///< peak memory of the bake
+};
+
+/// Voxelises the mesh more coarsely, at no more than 128 voxels along its diagonal, and scales the
+/// count by the area of a voxel: within some per cent, unless the coarse voxels merge what the fine
+/// ones tell apart.
+BakeEstimate estimate_bake(const Mesh& mesh, const ShaderInfo& shader, double voxel_size);
+
+/// Evaluates the shader on the voxels around the surface: a Domain::point shader at the voxel
+/// centres (exact there, so thin sheets and creases are no special case), a Domain::surface one at
+/// the nearest surface point. Filter width is the voxel size. Adds the coarser levels; rounds to
+/// half floats if asked. Parallel; the same result for any number of threads.
+///
+/// Fills everything of TextureGrid but object and errors. Error: see surface_band(), and if the
+/// shader gives a value that is not finite.
+TextureGrid bake_mesh(const Mesh& mesh, const BoundShader& shader, double voxel_size, bool half,
+                      const VoxelsDone& done = {});
+
+/// |lookup(p) - shader(p)| at surface points that the bake never saw, through the lookup that
+/// rendering uses, on level 0; linear colour. The points are random, uniform by area. Parallel; the same
+/// figures for any number of threads.
+/// @param filter_width  of the reference: the voxel size
+/// @return              by channel; mean and RMSE over points and components
+std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& shader,
+                                        const BrickPyramid& pyramid, double filter_width,
+                                        std::uint64_t samples, std::uint64_t seed);
+
+/// How many surface points an error is measured at: p99.9 then rests on 262 of them.
+inline constexpr std::uint64_t error_samples = std::uint64_t{1} << 18;
+
+/// Bakes with the largest voxel that keeps every channel's RMSE within a bound (found to within a tenth,
+/// by the error's measured growth with the voxel size).
+struct BoundedBake {
+    TextureGrid grid;   ///< errors filled in
+    int attempts = 0;
+};
+
+/// @param max_error  bound on RMSE, > 0
+/// @param max_bytes  Error (failed) with what was reached if the bound needs a bake larger than this
+BoundedBake bake_to_error(const Mesh& mesh, const BoundShader& shader, double max_error, bool half,
+                          std::uint64_t max_bytes, std::uint64_t seed, const VoxelsDone& done = {});
+
+}  // namespace estara

@@ -1,0 +1,47 @@
+// The voxels around a surface that a lookup on it can touch, and for each the nearest surface point.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include "estara/grids/texture_grid.h"
+#include "estara/scenes/mesh.h"
+
+namespace estara {
+
+/// Voxels and cells as in GridLevel, and what is known of every voxel, by row.
+struct SurfaceBand {
+    double voxel_size = 1.0;           ///< object space
+    glm::dvec3 origin{0.0};            ///< object position of voxel (0, 0, 0)
+    std::vector<Block> blocks;
+    std::vector<BlockMask> cells;      ///< by block
+    std::vector<std::uint32_t> triangle;  ///< nearest one of those that cross the eight cells around
+    std::vector<glm::vec2> barycentrics;  ///< b1, b2 of its nearest point
+    std::vector<float> distance;       ///< to that point, object space; negative behind the surface
+
+    std::uint64_t voxels() const noexcept { return triangle.size(); }
+    glm::vec3 position(const glm::ivec3& voxel) const noexcept {
+        return glm::vec3(origin + voxel_size * glm::dvec3(voxel));
+    }
+};
+
+/// Voxelises a mesh conservatively: active are the eight corners of every cell (unit cube between
+/// voxel centres) that a triangle touches, and no other voxel. Cells are taken larger by what a
+/// hit point's float coordinates may be off, so that a lookup at any computed surface point finds
+/// its eight voxels. Thin sheets and open meshes are no special case; a degenerate triangle counts
+/// as the segment or point that it is. Overlap test: Schwarz & Seidel 2010, "Fast Parallel Surface
+/// and Solid Voxelization on GPUs", section 3 (exact, by separating axes; here in double).
+///
+/// Cost grows with area / voxel_size^2 plus the number of triangles. Parallel over blocks; the
+/// result does not depend on the number of threads.
+/// @param voxel_size  object space, > 0. Error if it is below what floats resolve at the mesh's
+///                    coordinates, or the mesh spans more than 2^17 voxels
+SurfaceBand surface_band(const Mesh& mesh, double voxel_size);
+
+/// Whether the mesh bounds a solid: each edge has one triangle on either side, wound alike.
+/// Vertices at the same position count as one.
+bool is_closed(const Mesh& mesh);
+
+}  // namespace estara

@@ -1,0 +1,63 @@
+// The structure that rendering looks colours up in: TextureGrid flattened into bricks.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "estara/grids/texture_grid.h"
+
+namespace estara {
+
+/// A pyramid of bricks. Immutable after construction: any number of threads may look up at once,
+/// and a lookup is three table reads, two of them nearly always cached, and eight neighbouring
+/// voxels.
+class BrickPyramid {
+public:
+    static constexpr int max_floats = 8;
+
+    /// Copies the values of all levels, quantised per brick and float to 16 bits between the
+    /// smallest and the largest value found there (error at most range / 131070, plus rounding).
+    /// Runs in parallel. Error if the grid has more than max_floats floats or an extent beyond
+    /// 2^18.
+    explicit BrickPyramid(const TextureGrid& grid);
+    ~BrickPyramid();
+    BrickPyramid(BrickPyramid&&) noexcept;
+    BrickPyramid& operator=(BrickPyramid&&) noexcept;
+
+    int floats() const noexcept { return m_floats; }
+    int levels() const noexcept;
+    double voxel_size() const noexcept { return m_voxel_size; }
+    std::uint64_t bytes() const noexcept;
+
+    /// Trilinear value at an object-space point on one level.
+    /// @param level  in [0, levels())
+    /// @param out    floats() values; the grid's mean where there is no brick
+    /// @return       false if the point lies in no brick: it is not on the surface that was baked
+    bool lookup(const glm::vec3& P, int level, float* out) const noexcept;
+
+    /// Value for a footprint: blends the two levels whose voxels bracket it.
+    /// @param footprint  width of what a sample covers on the surface, object space; 0 and less
+    ///                   mean the finest level, NaN too
+    bool lookup(const glm::vec3& P, float footprint, float* out) const noexcept;
+
+    /// The (fractional) level for a footprint, in [0, levels() - 1]: log2(footprint / voxel) plus
+    /// level_bias.
+    float level_for(float footprint) const noexcept;
+
+    /// Added to the level: sharper than the voxel that matches the footprint, because a lookup
+    /// blurs over two voxels (measured: tests/README.md).
+    static constexpr float level_bias = -1.0f;
+
+private:
+    struct Level;
+    std::vector<Level> m_levels;
+    int m_floats = 0;
+    double m_voxel_size = 1.0;
+    glm::dvec3 m_origin{0.0};
+    std::array<float, max_floats> m_mean{};
+};
+
+}  // namespace estara

@@ -1,0 +1,38 @@
+// The eye of one frame: rays into the scene and directions back.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "estara/scenes/ray_scene.h"
+#include "estara/scenes/scene.h"
+#include "estara/shaders/seen.h"
+
+namespace estara {
+
+/// A pinhole camera at one time, with an image of one size. The only maker of ViewDirection.
+class Camera {
+public:
+    /// @param width, height  image size, pixels, >= 1
+    Camera(const PinholePose& pose, int width, int height) noexcept
+        : m_pose(pose), m_width(width), m_height(height) {}
+
+    /// The ray through the image at (x, y) in pixels, (0, 0) the upper left corner. Its direction
+    /// has 1 along the viewing axis, so t of a hit is not the distance.
+    Ray primary_ray(float x, float y) const noexcept;
+
+    /// Unit vector from a point to the eye, world space. At the eye itself, where there is none:
+    /// the way back along the viewing axis.
+    ViewDirection view_direction(const glm::vec3& P) const noexcept;
+
+    /// Distance from the eye to a point, world units.
+    float distance(const glm::vec3& P) const noexcept;
+
+    /// Angle between neighbouring pixels at the image centre, radians.
+    float pixel_angle() const noexcept { return m_pose.pixel_angle(m_height); }
+
+private:
+    PinholePose m_pose;
+    int m_width, m_height;
+};
+
+}  // namespace estara

@@ -1,0 +1,43 @@
+// A finished picture in memory.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace estara {
+
+/// Which pictures are wanted beside the colour.
+struct Aovs {
+    bool albedo =
+        false;  ///< the baked channel "color", linear Rec. 709; 0 for a shader without one
+    bool normal = false;    ///< "N": shading normal turned to the eye, world space
+    bool position = false;  ///< "P": world space
+    bool depth = false;     ///< "depth": distance to the eye, world units
+
+    bool any() const noexcept { return albedo || normal || position || depth; }
+};
+
+/// Switches on the picture of that name: albedo, N, P or depth. Error for any other, listing them.
+void add_aov(Aovs& aovs, const std::string& name);
+
+/// Row by row from the upper left pixel. Where nothing was hit everything is 0.
+struct Film {
+    /// All black. AOVs that are not wanted stay empty.
+    Film(int width, int height, const Aovs& aovs);
+
+    int width, height;
+    Aovs aovs;
+    std::vector<glm::vec4>
+        color;  ///< linear Rec. 709, associated alpha = share of the pixel covered
+    std::vector<glm::vec3> albedo, N, P;  ///< mean over the samples that hit something
+    std::vector<float> depth;             ///< likewise
+
+    std::size_t index(int x, int y) const noexcept {
+        return std::size_t(y) * std::size_t(width) + std::size_t(x);
+    }
+};
+
+}  // namespace estara

@@ -1,0 +1,75 @@
+// One picture of a scene.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "estara/grids/bricks.h"
+#include "estara/render/film.h"
+#include "estara/scenes/ray_scene.h"
+#include "estara/scenes/scene.h"
+
+namespace estara {
+
+/// What one object is rendered with.
+struct ObjectShading {
+    BoundShaderPtr shader;
+    std::shared_ptr<const BrickPyramid> pyramid;  ///< its baked values; null: evaluated directly
+    float filter_width = 1.0f;                    ///< of direct evaluation, object space, > 0
+};
+
+struct FrameSettings {
+    int width = 640, height = 360;  ///< pixels
+    int spp = 4;                    ///< samples a pixel, >= 1
+    std::uint32_t seed = 0;         ///< shifts the sample pattern
+    float exposure = 0.0f;          ///< EV: colours times 2^exposure
+    Aovs aovs;
+};
+
+/// What a frame has cost. Times in seconds; those of stages are summed over threads.
+struct FrameStatistics {
+    double seconds = 0.0;             ///< wall time of the whole frame
+    double evaluation_seconds = 0.0;  ///< the view-independent part: grid lookups and bake()
+    double view_seconds = 0.0;        ///< the view-dependent part: view()
+    double ray_seconds = 0.0;         ///< primary and shadow rays
+    std::uint64_t primary_rays = 0, shadow_rays = 0;
+    std::uint64_t samples = 0;     ///< shaded surface points
+    std::uint64_t lookups = 0;     ///< of them, those looked up in a grid
+    std::uint64_t misses = 0;      ///< lookups that found no brick and were evaluated directly
+    std::uint64_t bad_pixels = 0;  ///< NaN or infinite, written as 0
+
+    FrameStatistics& operator+=(const FrameStatistics& other) noexcept;
+};
+
+/// Renders frames of one scene, keeping its threads' working memory from frame to frame.
+class FrameRenderer {
+public:
+    /// Both must outlive this; `rays` is moved by every render().
+    FrameRenderer(const Scene& scene, RayScene& rays, const FrameSettings& settings);
+    ~FrameRenderer();
+    FrameRenderer(const FrameRenderer&) = delete;
+    FrameRenderer& operator=(const FrameRenderer&) = delete;
+
+    /// Tiles of a frame, for progress.
+    int tile_count() const noexcept;
+
+    /// Renders one frame, tiles in parallel. The same bits for any number of threads. One caller at
+    /// a time.
+    /// @param shading    by object
+    /// @param camera     index into Scene::cameras
+    /// @param time       seconds
+    /// @param film       of the settings' size and AOVs
+    /// @param tile_done  called by any thread after each tile; may be empty
+    FrameStatistics render(const std::vector<ObjectShading>& shading, int camera, double time,
+                           Film& film, const std::function<void()>& tile_done);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace estara

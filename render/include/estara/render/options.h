@@ -1,0 +1,49 @@
+// What the user asks estara-render for.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estara/render/file_pattern.h"
+#include "estara/render/frame.h"
+#include "estara/scenes/program.h"
+
+namespace estara {
+
+/// The baked values, or everything evaluated in each frame.
+enum class Strategy { grid, direct };
+const char* to_string(Strategy strategy) noexcept;
+
+struct Options {
+    std::string scene;
+    std::vector<FilePattern> outputs;
+    std::vector<std::string> grids;
+    Strategy strategy = Strategy::grid;
+    std::optional<FrameRange> frames;  ///< none: the scene's animation
+    double fps = 24.0;
+    FrameSettings frame;
+    std::string camera;                ///< "": the first one
+    std::optional<glm::vec3> ambient;  ///< none: the scene's
+    std::string shader;           ///< what objects wear that wear nothing in the scene; "": plastic
+    std::vector<Setting> params;  ///< of that shader
+    bool resume = false;
+    bool compare_direct = false;
+    std::string report, stats;  ///< file names; "": none
+    int threads = 0;            ///< 0: one a core
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+/// Reads the command line. Error, one line, for anything that is not as --help says.
+/// @param help  becomes what --help or --version prints, if that was asked for; the options are of
+///              no use then
+Options parse_options(int argc, const char* const* argv, std::string& help);
+
+/// The frames to render: --frames or the whole animation.
+FrameRange frames_of(const Options& options, const Scene& scene);
+
+/// Errors that show only with the scene at hand: several frames under one name.
+void check_outputs(const Options& options, const FrameRange& frames);
+
+}  // namespace estara

@@ -1,0 +1,121 @@
+#include "estara/render/dress.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace estara {
+namespace {
+
+constexpr int most_frames_looked_at = 64;
+
+/// A width that is > 0 even for an object without extent.
+float positive(float width) noexcept { return width > 0.0f ? width : 1.0f; }
+
+void tell_missing_grids(const Scene& scene, const GridMatch& match, const Say& say) {
+    std::map<std::string, std::vector<std::string>> without;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const Object& object = scene.objects[i];
+        if (match.grid_of_object[i] >= 0 || match.is_stale[i] || !object.wears_shader()) continue;
+        without[std::string(object.shader->info().name)].push_back(object.name);
+    }
+    for (const auto& [shader, objects] : without) {
+        say(fmt::format("shader '{}' is evaluated directly: no grid for {}", shader,
+                        fmt::join(objects, ", ")));
+    }
+}
+
+bool needs_direct_width(const Scene& scene, const GridMatch& match) {
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        if (match.grid_of_object[i] < 0 && scene.objects[i].wears_shader()) return true;
+    }
+    return false;
+}
+
+/// Each grid flattened once, however many objects share it.
+std::vector<std::shared_ptr<const BrickPyramid>> flatten(std::vector<LoadedGrid>& grids,
+                                                         const GridMatch& match) {
+    std::vector<std::shared_ptr<const BrickPyramid>> pyramids(grids.size());
+    for (const int g : match.grid_of_object) {
+        if (g < 0 || pyramids[std::size_t(g)]) continue;
+        pyramids[std::size_t(g)] = std::make_shared<BrickPyramid>(grids[std::size_t(g)].grid);
+        grids[std::size_t(g)].grid.levels.clear();  // as large again, and of no more use
+    }
+    return pyramids;
+}
+
+ObjectRecord record_of(const Object& object, const ObjectShading& shading) {
+    ObjectRecord record{object.name,
+                        std::string(object.shader->info().name),
+                        describe_values(*object.shader),
+                        shading.pyramid ? Strategy::grid : Strategy::direct,
+                        shading.filter_width,
+                        ""};
+    if (shading.pyramid) {
+        record.voxel_size = shading.pyramid->voxel_size();
+        record.levels = shading.pyramid->levels();
+        record.grid_bytes = shading.pyramid->bytes();
+    }
+    return record;
+}
+
+}  // namespace
+
+void put_on(Scene& scene, const std::string& shader, const std::vector<Setting>& params) {
+    if (shader.empty()) return;
+    for (Object& object : scene.objects) {
+        if (object.wears_shader()) continue;
+        object.choice = {shader, params, "--shader"};
+        object.shader = bind_choice(object.choice, object.mesh.has_uv());
+    }
+}
+
+std::vector<float> direct_filter_widths(const Scene& scene, RayScene& rays, int camera, double fps,
+                                        int width, int height) {
+    FrameRange frames = animated_frames(scene, fps);
+    frames.step = std::max(1, (frames.count() - 1) / most_frames_looked_at + 1);
+    std::vector<float> widths =
+        smallest_footprints(scene, rays, camera, frames, fps, width, height);
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+        const float diagonal = bounds(scene.objects[i].mesh).diagonal();
+        widths[i] = std::isfinite(widths[i]) ? std::max(0.5f * widths[i], diagonal / 16384.0f)
+                                             : diagonal / 512.0f;
+        widths[i] = positive(widths[i]);
+    }
+    return widths;
+}
+
+Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera, const Say& say) {
+    put_on(scene, options.shader, options.params);
+    std::vector<LoadedGrid> grids = load_grids(options.grids);
+    const GridMatch match = match_grids(scene, grids);
+    for (const std::string& warning : match.warnings) say("warning: " + warning);
+    const bool uses_grids = options.strategy == Strategy::grid;
+    if (uses_grids) tell_missing_grids(scene, match, say);
+
+    std::vector<float> widths(scene.objects.size());
+    if (needs_direct_width(scene, match)) {
+        widths = direct_filter_widths(scene, rays, camera, options.fps, options.frame.width,
+                                      options.frame.height);
+    }
+    std::vector<std::shared_ptr<const BrickPyramid>> pyramids(grids.size());
+    if (uses_grids) pyramids = flatten(grids, match);
+
+    Wardrobe wardrobe;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const int g = match.grid_of_object[i];
+        ObjectShading shading{scene.objects[i].shader, nullptr, positive(widths[i])};
+        if (g >= 0) shading.filter_width = float(grids[std::size_t(g)].grid.voxel_size);
+        wardrobe.direct.push_back(shading);
+        if (g >= 0) shading.pyramid = pyramids[std::size_t(g)];
+        wardrobe.records.push_back(record_of(scene.objects[i], shading));
+        if (shading.pyramid) wardrobe.records.back().grid_file = grids[std::size_t(g)].file;
+        wardrobe.chosen.push_back(std::move(shading));
+    }
+    return wardrobe;
+}
+
+}  // namespace estara

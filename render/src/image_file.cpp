@@ -1,0 +1,131 @@
+#include "estara/render/image_file.h"
+
+#include <OpenImageIO/color.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "estara/scenes/error.h"
+#include "estara/scenes/program.h"
+
+namespace estara {
+namespace {
+
+/// Channels one after the other in each pixel, as OpenImageIO takes them.
+struct ExrPixels {
+    OIIO::ImageSpec spec;
+    std::vector<float> values;
+};
+
+void add_channels(OIIO::ImageSpec& spec, std::initializer_list<const char*> names,
+                  OIIO::TypeDesc type) {
+    for (const char* name : names) {
+        spec.channelnames.emplace_back(name);
+        spec.channelformats.push_back(type);
+    }
+}
+
+OIIO::ImageSpec exr_spec(const Film& film) {
+    OIIO::ImageSpec spec(film.width, film.height, 0, OIIO::TypeHalf);
+    spec.channelnames.clear();
+    add_channels(spec, {"R", "G", "B", "A"}, OIIO::TypeHalf);
+    if (film.aovs.albedo) {
+        add_channels(spec, {"albedo.R", "albedo.G", "albedo.B"}, OIIO::TypeHalf);
+    }
+    if (film.aovs.normal) add_channels(spec, {"N.X", "N.Y", "N.Z"}, OIIO::TypeHalf);
+    if (film.aovs.position) add_channels(spec, {"P.X", "P.Y", "P.Z"}, OIIO::TypeFloat);
+    if (film.aovs.depth) {
+        add_channels(spec, {"Z"}, OIIO::TypeFloat);
+        spec.z_channel = int(spec.channelnames.size()) - 1;
+    }
+    spec.nchannels = int(spec.channelnames.size());
+    spec.alpha_channel = 3;
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "Linear");
+    return spec;
+}
+
+// A half holds up to 65504; what is brighter would become infinite.
+float within_half(float x) noexcept { return std::clamp(x, -65504.0f, 65504.0f); }
+
+ExrPixels exr_pixels(const Film& film) {
+    ExrPixels pixels{exr_spec(film), {}};
+    pixels.values.reserve(film.color.size() * std::size_t(pixels.spec.nchannels));
+    const auto append = [&](const auto& value, int components) {
+        for (int c = 0; c < components; ++c) pixels.values.push_back(value[c]);
+    };
+    for (std::size_t i = 0; i < film.color.size(); ++i) {
+        for (int c = 0; c < 4; ++c) pixels.values.push_back(within_half(film.color[i][c]));
+        if (film.aovs.albedo) {
+            for (int c = 0; c < 3; ++c) pixels.values.push_back(within_half(film.albedo[i][c]));
+        }
+        if (film.aovs.normal) append(film.N[i], 3);
+        if (film.aovs.position) append(film.P[i], 3);
+        if (film.aovs.depth) pixels.values.push_back(film.depth[i]);
+    }
+    return pixels;
+}
+
+std::uint8_t to_byte(float x) noexcept {
+    return std::uint8_t(std::lround(std::clamp(x, 0.0f, 1.0f) * 255.0f));
+}
+
+std::vector<std::uint8_t> png_pixels(const Film& film) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(film.color.size() * 4);
+    for (const glm::vec4& pixel : film.color) {
+        for (int c = 0; c < 3; ++c) {
+            const float straight = pixel.a > 0.0f ? pixel[c] / pixel.a : 0.0f;
+            bytes.push_back(to_byte(OIIO::linear_to_sRGB(std::clamp(straight, 0.0f, 1.0f))));
+        }
+        bytes.push_back(to_byte(pixel.a));
+    }
+    return bytes;
+}
+
+OIIO::ImageSpec png_spec(const Film& film) {
+    OIIO::ImageSpec spec(film.width, film.height, 4, OIIO::TypeUInt8);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return spec;
+}
+
+/// OpenImageIO's own words, one line, at most 200 characters.
+std::string first_line(std::string text) {
+    text.resize(std::min({text.find('\n'), text.size(), std::size_t(200)}));
+    return text.empty() ? "the disk may be full" : text;
+}
+
+void write_pixels(const std::string& temporary, const std::string& path, OIIO::ImageSpec spec,
+                  OIIO::TypeDesc type, const void* pixels) {
+    spec.attribute("Software", fmt::format("estara-render {}", version));
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(temporary);
+    if (!output) {
+        throw Error(fmt::format("{}: cannot be written: {}", path, first_line(OIIO::geterror())),
+                    ExitStatus::failed);
+    }
+    if (!output->open(temporary, spec) || !output->write_image(type, pixels) || !output->close()) {
+        throw Error(fmt::format("{}: cannot be written: {}", path, first_line(output->geterror())),
+                    ExitStatus::failed);
+    }
+}
+
+}  // namespace
+
+void write_image(const std::string& path, ImageFormat format, const Film& film) {
+    PendingFile file(path);
+    if (format == ImageFormat::exr) {
+        const ExrPixels pixels = exr_pixels(film);
+        write_pixels(file.path(), path, pixels.spec, OIIO::TypeFloat, pixels.values.data());
+    } else {
+        const std::vector<std::uint8_t> bytes = png_pixels(film);
+        write_pixels(file.path(), path, png_spec(film), OIIO::TypeUInt8, bytes.data());
+    }
+    file.commit();
+}
+
+}  // namespace estara

@@ -1,0 +1,28 @@
+// The matrices of a frame's instances.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+#include "estara/scenes/scene.h"
+
+namespace estara {
+
+struct PosedInstance {
+    int object;  ///< index into Scene::objects
+    glm::mat4 world_from_object;
+    glm::mat3 world_from_normal;  ///< inverse transpose up to a positive factor
+    float largest_scale;          ///< world length of the longest image of a unit vector
+};
+
+std::vector<PosedInstance> pose_instances(const Scene& scene, const Pose& pose);
+
+/// Largest singular value: how long a unit vector can become.
+double largest_singular_value(const glm::dmat3& m) noexcept;
+
+/// The inverse transpose times some positive number. For a singular matrix still the normals of
+/// what it flattens, as far as they exist.
+glm::dmat3 normal_matrix(const glm::dmat3& m) noexcept;
+
+}  // namespace estara

@@ -1,0 +1,236 @@
+#include "estara/render/options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "estara/scenes/error.h"
+
+namespace estara {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  estara-render bunny.obj --grids bunny.vdb -o 'frames/####.png'
+  estara-render room.glb --grids wood.vdb --grids stone.vdb --frames 1-100x5 --spp 16
+      -o 'frames/####.exr' --aov N --compare direct --report comparison.html)";
+
+/// The words of the command line that need more than a conversion.
+struct Words {
+    std::vector<std::string> outputs, params, aovs;
+    std::string frames, resolution, ambient, compare;
+    std::string strategy = to_string(Options{}.strategy);
+    std::string progress = "auto";
+};
+
+Strategy parse_strategy(const std::string& word) {
+    if (word == "grid") return Strategy::grid;
+    if (word == "direct") return Strategy::direct;
+    if (word == "cache" || word == "auto") {
+        throw Error(
+            fmt::format("strategy '{}' is not built yet: this version has grid and direct", word));
+    }
+    throw Error(fmt::format("--strategy: no '{}'; there are: grid, direct", word));
+}
+
+void check_ranges(const Options& options) {
+    if (options.frame.spp < 1 || options.frame.spp > 65536) {
+        throw Error(fmt::format("--spp {}: must be from 1 to 65536", options.frame.spp));
+    }
+    if (!(options.fps > 0.0) || !std::isfinite(options.fps)) {
+        throw Error(fmt::format("--fps {}: must be more than 0", options.fps));
+    }
+    if (!(std::abs(options.frame.exposure) <= 100.0f)) {
+        throw Error(fmt::format("--exposure {}: must be from -100 to 100", options.frame.exposure));
+    }
+    if (options.threads < 0 || options.threads > 4096) {
+        throw Error(fmt::format("--threads {}: must be from 0 to 4096", options.threads));
+    }
+    if (!options.params.empty() && options.shader.empty()) {
+        throw Error(
+            "--param needs --shader: objects with a shader have its parameters in the scene");
+    }
+}
+
+void check_names(const Options& options) {
+    std::set<std::string> names;
+    for (const FilePattern& output : options.outputs) {
+        if (!names.insert(output.text()).second) {
+            throw Error(fmt::format("-o {}: given twice", output.text()));
+        }
+    }
+    const bool has_exr =
+        std::any_of(options.outputs.begin(), options.outputs.end(),
+                    [](const FilePattern& o) { return o.format() == ImageFormat::exr; });
+    if (options.frame.aovs.any() && !has_exr) {
+        throw Error("--aov needs an .exr output: PNG holds the colour only");
+    }
+}
+
+void interpret(const Words& words, Options& options) {
+    for (const std::string& text : words.outputs) options.outputs.emplace_back(text);
+    for (const std::string& text : words.params) options.params.push_back(parse_setting(text));
+    for (const std::string& name : words.aovs) add_aov(options.frame.aovs, name);
+    options.strategy = parse_strategy(words.strategy);
+    if (!words.frames.empty()) options.frames = parse_frames(words.frames);
+    const glm::ivec2 resolution = parse_resolution(words.resolution);
+    options.frame.width = resolution.x;
+    options.frame.height = resolution.y;
+    if (!words.ambient.empty()) options.ambient = parse_color(words.ambient);
+    if (!words.compare.empty() && words.compare != "direct") {
+        throw Error(fmt::format("--compare: no '{}'; there is: direct", words.compare));
+    }
+    options.compare_direct = !words.compare.empty();
+    options.progress = parse_progress(words.progress);
+    check_ranges(options);
+    check_names(options);
+}
+
+void add_input(CLI::App& app, Options& options, Words& words) {
+    app.add_option("SCENE", options.scene, "glTF, OBJ or PLY file")->required();
+    app.add_option("--grids", options.grids, "what estara-bake wrote; may be repeated")
+        ->type_name("FILE.vdb")
+        ->allow_extra_args(false)
+        ->group("Input");
+    app.add_option("--camera", options.camera, "camera by name (default: the scene's first)")
+        ->type_name("NAME")
+        ->group("Input");
+    app.add_option("--frames", words.frames, "frames to render (default: the scene's animation)")
+        ->type_name("A-B[xSTEP]")
+        ->group("Input");
+    app.add_option("--fps", options.fps, "frames a second of the animation")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Input");
+    app.add_option("--shader", options.shader,
+                   "what objects wear that wear no shader in the scene (default: what their grid "
+                   "was baked with, else plastic)")
+        ->type_name("NAME")
+        ->group("Input");
+    app.add_option("--param", words.params, "parameter of --shader; may be repeated")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false)
+        ->group("Input");
+}
+
+void add_output(CLI::App& app, Options& options, Words& words) {
+    app.add_option("-o,--output", words.outputs,
+                   "images, .exr or .png; #### or %04d is the frame's number; may be repeated")
+        ->type_name("FILE")
+        ->required()
+        ->allow_extra_args(false)
+        ->group("Output");
+    app.add_option("--aov", words.aovs,
+                   "albedo, N, P or depth beside the colour in .exr files; may be repeated")
+        ->type_name("NAME")
+        ->allow_extra_args(false)
+        ->group("Output");
+    app.add_flag("--resume", options.resume, "skip frames whose images are all there")
+        ->group("Output");
+    app.add_option("--report", options.report, "write a page of times and errors")
+        ->type_name("FILE.html")
+        ->group("Output");
+    app.add_option("--stats", options.stats, "write the same and more for programs")
+        ->type_name("FILE.json")
+        ->group("Output");
+}
+
+void add_picture(CLI::App& app, Options& options, Words& words) {
+    app.add_option("--resolution", words.resolution, "image size in pixels")
+        ->type_name("WxH")
+        ->capture_default_str()
+        ->group("Picture");
+    app.add_option("--spp", options.frame.spp, "samples a pixel; 1 is the pixel's centre")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Picture");
+    app.add_option("--exposure", options.frame.exposure, "colours times 2^EV")
+        ->type_name("EV")
+        ->capture_default_str()
+        ->group("Picture");
+    app.add_option("--ambient", words.ambient, "ambient light (default: the scene's)")
+        ->type_name("R,G,B")
+        ->group("Picture");
+    app.add_option("--seed", options.frame.seed, "shifts the samples inside the pixels")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Picture");
+}
+
+void add_work(CLI::App& app, Options& options, Words& words) {
+    app.add_option("--strategy", words.strategy,
+                   "grid: baked where there is a grid, else direct; direct: evaluate everything in "
+                   "every frame")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Work");
+    app.add_option("--compare", words.compare,
+                   "render each frame directly too; print error and times")
+        ->type_name("direct")
+        ->group("Work");
+    app.add_option("--threads", options.threads, "0: one for each core")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Work");
+    app.add_option("--progress", words.progress,
+                   "auto: a bar on a terminal, lines elsewhere; plain: lines; none")
+        ->type_name("STYLE")
+        ->capture_default_str()
+        ->group("Work");
+}
+
+std::string one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+}  // namespace
+
+const char* to_string(Strategy strategy) noexcept {
+    return strategy == Strategy::grid ? "grid" : "direct";
+}
+
+Options parse_options(int argc, const char* const* argv, std::string& help) {
+    Options options;
+    Words words;
+    words.resolution = fmt::format("{}x{}", options.frame.width, options.frame.height);
+    CLI::App app("Renders an animation with baked or directly evaluated shaders.", "estara-render");
+    app.set_version_flag("--version", fmt::format("estara-render {}", version));
+    app.footer(examples);
+    add_input(app, options, words);
+    add_output(app, options, words);
+    add_picture(app, options, words);
+    add_work(app, options, words);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        help = app.help();
+        return options;
+    } catch (const CLI::CallForVersion&) {
+        help = app.version() + "\n";
+        return options;
+    } catch (const CLI::ParseError& error) {
+        throw Error(one_line(error.what()) + "; --help lists the options");
+    }
+    interpret(words, options);
+    return options;
+}
+
+FrameRange frames_of(const Options& options, const Scene& scene) {
+    return options.frames ? *options.frames : animated_frames(scene, options.fps);
+}
+
+void check_outputs(const Options& options, const FrameRange& frames) {
+    for (const FilePattern& output : options.outputs) {
+        if (frames.count() > 1 && !output.is_numbered()) {
+            throw Error(
+                fmt::format("-o {}: {} frames need a number in the name, as in "
+                            "frames/####.exr or frames/%04d.exr",
+                            output.text(), frames.count()));
+        }
+    }
+}
+
+}  // namespace estara

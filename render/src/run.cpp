@@ -1,0 +1,166 @@
+#include "estara/render/run.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "estara/render/image_queue.h"
+#include "estara/render/report.h"
+#include "estara/scenes/load.h"
+#include "estara/scenes/program.h"
+
+namespace estara {
+namespace {
+
+bool is_finished(const Options& options, int frame) {
+    return std::all_of(options.outputs.begin(), options.outputs.end(), [&](const FilePattern& o) {
+        std::error_code unreadable;  // then it is not there for us
+        return std::filesystem::is_regular_file(o.path(frame), unreadable);
+    });
+}
+
+std::vector<int> frames_to_render(const Options& options, const FrameRange& range) {
+    std::vector<int> frames;
+    for (int i = 0; i < range.count(); ++i) {
+        if (!options.resume || !is_finished(options, range.at(i))) frames.push_back(range.at(i));
+    }
+    return frames;
+}
+
+/// Fails before the work instead of after it if nothing can be written where it is wanted.
+void check_folders(const Options& options, int frame) {
+    for (const FilePattern& output : options.outputs) const PendingFile probe(output.path(frame));
+    if (!options.stats.empty()) const PendingFile probe(options.stats);
+    if (!options.report.empty()) const PendingFile probe(options.report);
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    PendingFile file(path);
+    std::ofstream out(file.path(), std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) {
+        throw Error(fmt::format("{}: cannot be written; the disk may be full", path),
+                    ExitStatus::failed);
+    }
+    file.commit();
+}
+
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+void warn_of_frames(const RunRecord& record, const Say& say) {
+    if (record.frames.empty()) return;
+    const Summary all = summary(record);
+    if (all.bad_pixels > 0) {
+        say(fmt::format("warning: {} not a finite number, written as 0",
+                        counted(all.bad_pixels, "pixel is", "pixels are")));
+    }
+    if (all.misses > 0) {
+        say(fmt::format("warning: {} of {} found nothing in their grid and were evaluated directly",
+                        counted(all.misses, "sample", "samples"), all.lookups));
+    }
+}
+
+/// Renders the frames one after the other while finished ones are written.
+class Animation {
+public:
+    Animation(const Options& options, const Scene& scene, RayScene& rays, const Wardrobe& wardrobe,
+              int camera)
+        : m_options(options),
+          m_wardrobe(wardrobe),
+          m_camera(camera),
+          m_renderer(scene, rays, options.frame) {}
+
+    std::vector<FrameRecord> render(const std::vector<int>& frames) {
+        std::vector<FrameRecord> records;
+        if (frames.empty()) return records;
+        const std::uint64_t passes = m_options.compare_direct ? 2 : 1;
+        Progress progress(m_options.progress, "rendering",
+                          frames.size() * passes * std::uint64_t(m_renderer.tile_count()));
+        ImageQueue queue;
+        for (const int frame : frames) {
+            if (m_options.compare_direct) queue.finish();  // times are compared: nothing else runs
+            Film film = new_film();
+            records.push_back(render_frame(frame, film, [&] { progress.advance(1); }));
+            queue.push(std::move(film), frame, m_options.outputs);
+        }
+        queue.finish();
+        return records;
+    }
+
+private:
+    Film new_film() const {
+        return {m_options.frame.width, m_options.frame.height, m_options.frame.aovs};
+    }
+
+    FrameRecord render_frame(int frame, Film& film, const std::function<void()>& tile_done) {
+        const double time = frame / m_options.fps;
+        FrameRecord record{frame, {}, {}, {}, {}};
+        for (const FilePattern& output : m_options.outputs) {
+            record.files.push_back(output.path(frame));
+        }
+        record.cost = m_renderer.render(m_wardrobe.chosen, m_camera, time, film, tile_done);
+        if (m_options.compare_direct) {
+            Film reference = new_film();
+            record.direct =
+                m_renderer.render(m_wardrobe.direct, m_camera, time, reference, tile_done);
+            record.error = compare_films(film, reference);
+        }
+        return record;
+    }
+
+    const Options& m_options;
+    const Wardrobe& m_wardrobe;
+    int m_camera;
+    FrameRenderer m_renderer;
+};
+
+}  // namespace
+
+RunRecord run(const Options& options, const Say& say) {
+    const Stopwatch whole;
+    Scene scene = load_scene(options.scene);
+    const double loading = whole.seconds();
+    RunRecord record = run(options, std::move(scene), say);
+    record.seconds += loading;
+    return record;
+}
+
+RunRecord run(const Options& options, Scene scene, const Say& say) {
+    const Stopwatch whole;
+    const std::size_t threads = options.threads > 0
+                                    ? std::size_t(options.threads)
+                                    : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+
+    for (const std::string& warning : scene.warnings) say("warning: " + warning);
+    if (options.ambient) scene.ambient = *options.ambient;
+    RunRecord record;
+    record.options = options;
+    record.range = frames_of(options, scene);
+    check_outputs(options, record.range);
+    const int camera = find_camera(scene, options.camera);
+    const std::vector<int> frames = frames_to_render(options, record.range);
+    record.skipped = record.range.count() - int(frames.size());
+    check_folders(options, record.range.first);
+
+    if (!frames.empty()) {
+        RayScene rays(scene);
+        const Wardrobe wardrobe = dress(scene, rays, options, camera, say);
+        record.objects = wardrobe.records;
+        record.frames = Animation(options, scene, rays, wardrobe, camera).render(frames);
+    }
+    record.seconds = whole.seconds();
+    warn_of_frames(record, say);
+    if (!options.stats.empty()) write_text(options.stats, json_text(record));
+    if (!options.report.empty()) write_text(options.report, html_text(record, options.report));
+    return record;
+}
+
+}  // namespace estara

@@ -1,0 +1,50 @@
+// Triangle meshes and points on them.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace estara {
+
+/// A triangle mesh in its object's own space. Every index is in range and every coordinate finite
+/// (the loader sees to it); degenerate triangles may occur.
+struct Mesh {
+    std::vector<glm::vec3> P;           ///< vertex positions, object space
+    std::vector<glm::vec3> N;           ///< vertex normals, unit; empty: triangles are flat
+    std::vector<glm::vec2> uv;          ///< texture coordinates per vertex; empty: none
+    std::vector<glm::uvec3> triangles;  ///< indices into P, counter-clockwise seen from outside
+
+    bool has_uv() const noexcept { return !uv.empty(); }
+};
+
+struct Box {
+    glm::vec3 min{0.0f}, max{0.0f};
+    float diagonal() const noexcept { return glm::length(max - min); }
+};
+
+/// Bounds of the vertices that triangles use; an empty mesh has the empty box at 0.
+Box bounds(const Mesh& mesh);
+
+/// Surface area, object space units squared.
+double area(const Mesh& mesh);
+
+/// A point on a triangle.
+struct MeshPoint {
+    glm::vec3 P;     ///< interpolated from the vertices, object space
+    glm::vec3 N;     ///< shading normal, unit: interpolated, or Ng where the mesh has none or they cancel
+    glm::vec3 Ng;    ///< geometric normal, unit; (0, 0, 1) on a degenerate triangle
+    glm::vec2 uv;    ///< (0, 0) without texture coordinates
+    glm::vec3 dPdu;  ///< never zero: some tangent where uv does not give one
+};
+
+/// The point (1 - b1 - b2) P0 + b1 P1 + b2 P2 of a triangle.
+/// @param b1, b2  barycentric coordinates as Embree's u and v: >= 0, b1 + b2 <= 1
+MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b2) noexcept;
+
+/// 16 hex digits that change whenever a position, texture coordinate, normal or triangle does.
+std::string mesh_digest(const Mesh& mesh);
+
+}  // namespace estara

@@ -1,0 +1,77 @@
+// Rays through a scene. The only door to Embree.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "estara/scenes/scene.h"
+
+namespace estara {
+
+struct Ray {
+    glm::vec3 origin;     ///< world
+    glm::vec3 direction;  ///< world, any length > 0
+    float tmin, tmax;     ///< in units of direction's length
+};
+
+struct Hit {
+    static constexpr std::uint32_t none = ~0u;
+    std::uint32_t instance = none;  ///< index into Scene::instances; none: nothing hit
+    std::uint32_t triangle = 0;     ///< index into the object's mesh
+    float b1 = 0.0f, b2 = 0.0f;     ///< barycentric coordinates, as mesh_point() takes them
+    float t = 0.0f;
+};
+
+/// The scene's geometry in a two-level acceleration structure: one per mesh in object space, one
+/// over the instances, rebuilt for each frame.
+class RayScene {
+public:
+    /// Builds the structures of all meshes in parallel, posed as at time 0. The scene must outlive
+    /// this.
+    /// Error (failed) if Embree runs out of memory.
+    explicit RayScene(const Scene& scene);
+    ~RayScene();
+    RayScene(const RayScene&) = delete;
+    RayScene& operator=(const RayScene&) = delete;
+
+    /// Moves the instances. Not while other threads trace. One whose matrix is singular (scaled to
+    /// nothing) or not finite cannot be hit.
+    void set_pose(const Pose& pose);
+
+    /// Nearest hits, hits[i] for rays[i]; rays that start near each other and go the same way are
+    /// fastest (packets of 16). Any thread, any number at once. Rays with NaN hit nothing.
+    void intersect(std::span<const Ray> rays, Hit* hits) const;
+
+    /// blocked[i] = 1 if anything lies between tmin and tmax of rays[i], else 0. As intersect().
+    void occluded(std::span<const Ray> rays, std::uint8_t* blocked) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+/// A point moved off its surface by more than the rounding error with which it was computed, so
+/// that a ray from it does not meet the surface again and does not skip what is near.
+/// (Bound after Pharr, Jakob & Humphreys 2016, "Physically Based Rendering", section 3.9.)
+/// @param P             hit point, world, = world_from_object * P_object computed in float
+/// @param N             unit geometric normal on the side the ray leaves to, world
+/// It is moved by less than 64 ulps of P's largest coordinate where object and world sizes are alike.
+/// @param world_from_object, P_object  what P was computed from: their sizes bound its error. Of
+///        P_object only magnitudes count; for a triangle that is large compared with |P_object|
+///        (aslant through the origin) give the largest magnitudes of its vertices instead
+glm::vec3 offset_from_surface(const glm::vec3& P, const glm::vec3& N,
+                              const glm::mat4& world_from_object,
+                              const glm::vec3& P_object) noexcept;
+
+/// For each object the smallest width that a pixel covers on it, over all frames in which some
+/// pixel sees it, object space; infinity for an object no pixel of any frame sees.
+///
+/// Sampled with every fourth pixel in both directions (each at its centre); distances are
+/// exact there, a closer point between samples is missed. Moves `rays`. Deterministic.
+std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int camera,
+                                       const FrameRange& frames, double fps, int width, int height);
+
+}  // namespace estara

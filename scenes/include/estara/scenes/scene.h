@@ -1,0 +1,163 @@
+// The scene model: what estara-bake and estara-render know of the world. Lengths are in the
+// scene's own unit (metres in glTF), angles in radians, colours linear Rec. 709, y is up.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estara/scenes/mesh.h"
+#include "estara/shaders/registry.h"
+
+namespace estara {
+
+/// What a material says about its shader, as the user wrote it.
+struct ShaderChoice {
+    std::string name;               ///< empty: the material names none
+    std::vector<Setting> settings;
+    std::string where;              ///< "scene.glb: material \"table\"", for messages
+};
+
+/// A mesh with its material: what is baked, and what grids are named after.
+struct Object {
+    std::string name;  ///< unique in the scene; letters, digits, '_', '-' and '.' only (else '_')
+    std::string mesh_name;              ///< as in the file; messages and --object know it too
+    Mesh mesh;
+    ShaderChoice choice;
+    glm::vec3 base_color{0.5f};         ///< glTF baseColorFactor; what an object without shader shows
+    BoundShaderPtr shader;              ///< choice bound; `plastic` with Cs = base_color without one
+    bool wears_shader() const noexcept { return !choice.name.empty(); }
+};
+
+enum class Interpolation { linear, step, cubic_spline };
+
+/// Key frames of one property. cubic_spline has three values a key: in-tangent, value, out-tangent.
+template <class T>
+struct Track {
+    Interpolation interpolation = Interpolation::linear;
+    std::vector<float> times;  ///< seconds, strictly ascending
+    std::vector<T> values;
+    bool empty() const noexcept { return times.empty(); }
+};
+
+/// A coordinate frame in the hierarchy. Either TRS, animated or not, or a fixed matrix.
+struct Node {
+    std::string name;
+    int parent = -1;  ///< index into Scene::nodes, smaller than the node's own; -1: the world
+    glm::vec3 translation{0.0f};
+    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+    glm::vec3 scale{1.0f};
+    std::optional<glm::mat4> matrix;  ///< instead of the three above
+    Track<glm::vec3> translations, scales;
+    Track<glm::quat> rotations;
+};
+
+struct Instance {
+    int object = 0;  ///< index into Scene::objects
+    int node = 0;    ///< index into Scene::nodes
+};
+
+/// A perspective camera that looks along its node's -z with y up.
+struct SceneCamera {
+    std::string name;
+    int node = 0;
+    float yfov = 0.8f;  ///< vertical field of view, radians, (0, pi)
+};
+
+enum class LightType { directional, point, spot };
+
+/// KHR_lights_punctual: shines along its node's -z.
+struct SceneLight {
+    std::string name;
+    LightType type = LightType::point;
+    int node = 0;
+    glm::vec3 color{1.0f};
+    float intensity = 1.0f;  ///< lux (directional) or candela, as the file says; photometric
+    float range = 0.0f;      ///< beyond it the light has no effect; 0: no limit
+    float inner_cone = 0.0f, outer_cone = 0.7853982f;  ///< radians from the axis, spots only
+};
+
+/// Frame f shows the time f / fps.
+struct FrameRange {
+    int first = 1, last = 1;  ///< inclusive
+    int step = 1;
+    int count() const noexcept { return (last - first) / step + 1; }
+    int at(int i) const noexcept { return first + i * step; }
+};
+
+struct Scene {
+    std::string path;              ///< as the user named the file
+    std::vector<Node> nodes;       ///< parents before children
+    std::vector<Object> objects;
+    std::vector<Instance> instances;
+    std::vector<SceneCamera> cameras;
+    std::vector<SceneLight> lights;
+    glm::vec3 ambient{0.0f};       ///< RSL's ambient light, added to every surface (scene extras "ambient")
+    std::vector<std::string> warnings;  ///< what the file has and this project does not show
+};
+
+/// Everything that moves, at one time.
+struct Pose {
+    std::vector<glm::mat4> world_from_node;  ///< by node
+};
+
+/// @param time  seconds; before the first and after the last key a track holds its end values
+Pose pose_at(const Scene& scene, double time);
+
+/// The frames of the scene's animation: from the first key to the last at `fps` frames a second;
+/// 1-1 for a scene without animation.
+FrameRange animated_frames(const Scene& scene, double fps);
+
+/// A light at one time, ready to illuminate.
+struct PosedLight {
+    LightType type;
+    glm::vec3 position;   ///< world; not for directional lights
+    glm::vec3 direction;  ///< unit, the way it shines, world
+    glm::vec3 color;      ///< color * intensity / 683: watts per steradian (m^2 for directional)
+    float range, cos_inner, cos_outer;
+};
+
+std::vector<PosedLight> posed_lights(const Scene& scene, const Pose& pose);
+
+/// What of a light arrives at a point if nothing is in between.
+struct LightSample {
+    glm::vec3 L{0.0f};       ///< unit, from the point to the light, world
+    float distance = 0.0f;   ///< to the light; infinity for directional lights
+    glm::vec3 Cl{0.0f};      ///< irradiance at normal incidence / pi; 0 outside cone and range, and at the light itself
+};
+
+/// Attenuation as KHR_lights_punctual recommends (inverse square, windowed by range; spot cone).
+LightSample sample_light(const PosedLight& light, const glm::vec3& point) noexcept;
+
+/// A camera's geometry at one time: a pinhole, world space.
+struct PinholePose {
+    glm::vec3 eye;
+    glm::vec3 right, up, forward;  ///< orthonormal
+    float tan_half_yfov;
+
+    /// Unnormalised direction through the image at (x, y) in pixels, (0, 0) the upper left corner:
+    /// its component along forward is 1.
+    glm::vec3 direction(float x, float y, int width, int height) const noexcept;
+
+    /// Angle between neighbouring pixels at the image centre, radians (the largest in the image).
+    float pixel_angle(int height) const noexcept;
+};
+
+PinholePose pinhole_pose(const Scene& scene, const SceneCamera& camera, const Pose& pose);
+
+/// Index of the camera of that name; the first one for "". Error with the names there are.
+int find_camera(const Scene& scene, const std::string& name);
+
+/// Objects that a bake of `shader` means: those matching any glob (by object, mesh or node name;
+/// * and ?), or without globs those wearing the shader, or all if none wears any shader at all.
+/// Error, with the names there are, if a glob matches nothing or nothing is left.
+std::vector<int> select_objects(const Scene& scene, const std::string& shader,
+                                const std::vector<std::string>& globs);
+
+/// Binds choice's shader for a mesh. All problems in one Error, each behind choice.where.
+BoundShaderPtr bind_choice(const ShaderChoice& choice, bool has_uv);
+
+}  // namespace estara

@@ -1,0 +1,105 @@
+// What the camera path needs of each object's resolution.
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estara/scenes/ray_scene.h"
+
+namespace estara {
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int stride = 4;  // pixels between samples
+
+/// Largest singular value of m: the most by which it lengthens any vector.
+///
+/// Square root of the largest eigenvalue of m^T m, by Smith 1961, "Eigenvalues of a symmetric 3x3
+/// matrix".
+double largest_stretch(const glm::dmat3& m) noexcept {
+    const glm::dmat3 a = glm::transpose(m) * m;
+    const double mean = (a[0][0] + a[1][1] + a[2][2]) / 3.0;
+    glm::dmat3 b = a;
+    for (int i = 0; i < 3; ++i) b[i][i] -= mean;
+    double squares = 0.0;
+    for (int i = 0; i < 3; ++i) squares += glm::dot(b[i], b[i]);
+    const double spread = std::sqrt(squares / 6.0);
+    if (!(spread > 0.0)) return std::sqrt(mean);  // all eigenvalues alike
+    const double r = glm::determinant(b / spread) / 2.0;
+    const double angle = std::acos(std::clamp(r, -1.0, 1.0)) / 3.0;
+    return std::sqrt(mean + 2.0 * spread * std::cos(angle));
+}
+
+/// One thread's rays of one row of samples, and the smallest footprints it has met.
+struct Worker {
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    std::vector<float> smallest;  ///< by object
+};
+
+/// One frame: what turns a hit into a footprint.
+struct View {
+    PinholePose camera;
+    std::vector<float> footprint_per_distance;  ///< by instance, object space over world distance
+};
+
+View view_at(const Scene& scene, const SceneCamera& camera, const Pose& pose, int height) {
+    View view{pinhole_pose(scene, camera, pose), {}};
+    const double pixel_angle = view.camera.pixel_angle(height);
+    for (const Instance& instance : scene.instances) {
+        const glm::mat4& world_from_object = pose.world_from_node[instance.node];
+        const double stretch = largest_stretch(glm::dmat3(glm::mat3(world_from_object)));
+        view.footprint_per_distance.push_back(float(pixel_angle / stretch));
+    }
+    return view;
+}
+
+void trace_row(const Scene& scene, const RayScene& rays, const View& view, int y, int width,
+               int height, Worker& worker) {
+    worker.rays.clear();
+    for (int x = 0; x < width; x += stride) {
+        const glm::vec3 direction =
+            view.camera.direction(float(x) + 0.5f, float(y) + 0.5f, width, height);
+        worker.rays.push_back({view.camera.eye, direction, 0.0f, infinity});
+    }
+    worker.hits.resize(worker.rays.size());
+    rays.intersect(worker.rays, worker.hits.data());
+    for (std::size_t i = 0; i < worker.hits.size(); ++i) {
+        const Hit& hit = worker.hits[i];
+        if (hit.instance == Hit::none) continue;
+        const float distance = hit.t * glm::length(worker.rays[i].direction);
+        float& smallest = worker.smallest[scene.instances[hit.instance].object];
+        smallest = std::min(smallest, distance * view.footprint_per_distance[hit.instance]);
+    }
+}
+
+}  // namespace
+
+std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int camera,
+                                       const FrameRange& frames, double fps, int width,
+                                       int height) {
+    const std::vector<float> unseen(scene.objects.size(), infinity);
+    tbb::enumerable_thread_specific<Worker> workers(Worker{{}, {}, unseen});
+    const int rows = (height + stride - 1) / stride;
+    for (int f = 0; f < frames.count(); ++f) {
+        const Pose pose = pose_at(scene, frames.at(f) / fps);
+        rays.set_pose(pose);
+        const View view = view_at(scene, scene.cameras[camera], pose, height);
+        tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const auto& range) {
+            Worker& worker = workers.local();
+            for (int row = range.begin(); row < range.end(); ++row)
+                trace_row(scene, rays, view, row * stride, width, height, worker);
+        });
+    }
+    std::vector<float> smallest = unseen;
+    for (const Worker& worker : workers)
+        for (std::size_t i = 0; i < smallest.size(); ++i)
+            smallest[i] = std::min(smallest[i], worker.smallest[i]);
+    return smallest;
+}
+
+}  // namespace estara

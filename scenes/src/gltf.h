@@ -1,0 +1,66 @@
+// The parts of the glTF reader. Private to this folder.
+//
+// tinygltf takes the file apart and checks almost no index; every one is checked here before it is
+// followed. `where` is what a message begins with: 'scene.glb: mesh "vase"'.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "loaders.h"
+
+namespace estara {
+
+/// Parses the file and what it refers to, but images. Error if it is not glTF 2.0, is truncated,
+/// or requires an extension that this does not read.
+tinygltf::Model parse_gltf(const std::string& path, std::vector<std::string>& warnings);
+
+/// 'mesh "vase"', or 'mesh 3' for one without a name.
+std::string gltf_name(const char* kind, const std::string& name, std::size_t index);
+
+/// Element i of a list that the file refers to by number. Error if it is not there.
+template <class T>
+const T& gltf_element(const std::vector<T>& list, int i, const std::string& where,
+                      const char* what);
+[[noreturn]] void fail_no_element(const std::string& where, const char* what, int i,
+                                  std::size_t count);
+
+/// An accessor's values as floats, `components` for each of its elements; integers are scaled to
+/// [0, 1] or [-1, 1] if it is normalised. Error if they are not of that many components, not all
+/// in the buffer, or not all finite.
+std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components,
+                               const std::string& where);
+
+/// An accessor's values as indices.
+std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor,
+                                        const std::string& where);
+
+/// Whether a primitive is made of triangles, not of points or lines.
+bool has_triangles(const tinygltf::Primitive& primitive);
+
+/// A primitive of triangles, with the vertices it uses only.
+Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                    const std::string& where);
+
+/// What a material says: the shader and the colour. An index of -1 is no material.
+void read_material(const tinygltf::Model& model, int index, const std::string& where,
+                   Object& object, std::vector<std::string>& warnings);
+
+/// The scene's extras "ambient", if it has one.
+std::optional<glm::vec3> read_ambient(const tinygltf::Scene& scene, const std::string& where);
+
+/// Puts the key frames into the nodes.
+/// @param ours  index into scene.nodes by index in the file; -1 for nodes that are not shown
+void read_animations(const tinygltf::Model& model, const std::vector<int>& ours, Scene& scene);
+
+template <class T>
+const T& gltf_element(const std::vector<T>& list, int i, const std::string& where,
+                      const char* what) {
+    if (i < 0 || std::size_t(i) >= list.size()) fail_no_element(where, what, i, list.size());
+    return list[std::size_t(i)];
+}
+
+}  // namespace estara

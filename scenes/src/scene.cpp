@@ -1,0 +1,134 @@
+// Finding things in a scene by the names a user gives, and binding shaders.
+#include "estara/scenes/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "estara/scenes/error.h"
+
+namespace estara {
+namespace {
+
+/// Whether a name matches a pattern of letters, '*' (any run) and '?' (any one).
+bool matches(std::string_view pattern, std::string_view name) {
+    std::size_t p = 0, n = 0;
+    std::size_t star = std::string_view::npos, resume = 0;  // last '*', and where its run ends
+    while (n < name.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star = p++;
+            resume = n;
+        } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+            ++p;
+            ++n;
+        } else if (star != std::string_view::npos) {
+            p = star + 1;
+            n = ++resume;
+        } else {
+            return false;
+        }
+    }
+    while (p < pattern.size() && pattern[p] == '*') ++p;
+    return p == pattern.size();
+}
+
+/// "a, b, c", cut after twenty.
+std::string list(const std::vector<std::string>& names) {
+    constexpr std::size_t shown = 20;
+    const std::vector<std::string> head(names.begin(),
+                                        names.begin() + long(std::min(shown, names.size())));
+    std::string text = fmt::format("{}", fmt::join(head, ", "));
+    if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+    return text;
+}
+
+std::vector<std::string> object_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Object& object : scene.objects) names.push_back(object.name);
+    return names;
+}
+
+bool is_named(const Scene& scene, int object, std::string_view pattern) {
+    const Object& o = scene.objects[std::size_t(object)];
+    if (matches(pattern, o.name) || matches(pattern, o.mesh_name)) return true;
+    return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& i) {
+        return i.object == object && matches(pattern, scene.nodes[std::size_t(i.node)].name);
+    });
+}
+
+std::vector<int> objects_matching(const Scene& scene, const std::vector<std::string>& globs) {
+    std::vector<bool> chosen(scene.objects.size(), false);
+    for (const std::string& glob : globs) {
+        bool found = false;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            if (!is_named(scene, int(i), glob)) continue;
+            chosen[i] = found = true;
+        }
+        if (!found) {
+            throw Error(fmt::format("{}: --object '{}' matches nothing; the scene has: {}",
+                                    scene.path, glob, list(object_names(scene))));
+        }
+    }
+    std::vector<int> objects;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        if (chosen[i]) objects.push_back(int(i));
+    }
+    return objects;
+}
+
+std::vector<int> objects_wearing(const Scene& scene, const std::string& shader) {
+    std::vector<int> wearing, all;
+    std::vector<std::string> others;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const Object& object = scene.objects[i];
+        all.push_back(int(i));
+        if (!object.wears_shader()) continue;
+        if (object.choice.name == shader) {
+            wearing.push_back(int(i));
+        } else {
+            others.push_back(fmt::format("{} ({})", object.name, object.choice.name));
+        }
+    }
+    if (!wearing.empty()) return wearing;
+    if (others.empty() && !all.empty()) return all;
+    if (all.empty()) throw Error(fmt::format("{}: the scene has no objects", scene.path));
+    throw Error(
+        fmt::format("{}: no object wears shader '{}'; with a shader there are: {}; "
+                    "choose one with --object",
+                    scene.path, shader, list(others)));
+}
+
+}  // namespace
+
+int find_camera(const Scene& scene, const std::string& name) {
+    if (scene.cameras.empty()) throw Error(fmt::format("{}: the scene has no camera", scene.path));
+    if (name.empty()) return 0;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        if (scene.cameras[i].name == name) return int(i);
+        names.push_back(scene.cameras[i].name);
+    }
+    throw Error(
+        fmt::format("{}: no camera '{}'; the scene has: {}", scene.path, name, list(names)));
+}
+
+std::vector<int> select_objects(const Scene& scene, const std::string& shader,
+                                const std::vector<std::string>& globs) {
+    return globs.empty() ? objects_wearing(scene, shader) : objects_matching(scene, globs);
+}
+
+BoundShaderPtr bind_choice(const ShaderChoice& choice, bool has_uv) {
+    BindResult result = bind_shader(choice.name, choice.settings, has_uv);
+    if (result.problems.empty()) return result.shader;
+    std::string text;
+    for (const Problem& problem : result.problems) {
+        if (!text.empty()) text += '\n';
+        if (!choice.where.empty()) text += choice.where + ": ";
+        text += problem.what;
+        if (!problem.hint.empty()) text += "; " + problem.hint;
+    }
+    throw Error(text);
+}
+
+}  // namespace estara

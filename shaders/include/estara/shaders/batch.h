@@ -1,0 +1,32 @@
+// Points in structure-of-arrays form, one OpenVDB leaf's worth at most.
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace estara {
+
+/// Up to 512 = 8^3 points that share one filter width. Row stride is `capacity`, whatever `size`.
+struct alignas(64) SurfaceBatch {
+    static constexpr int capacity = 512;
+
+    float P[3][capacity];
+    float N[3][capacity];
+    float uv[2][capacity];
+    float dPdu[3][capacity];
+    int size = 0;               ///< number of points in use, [0, capacity]
+    float filter_width = 1.0f;  ///< see SurfacePoint; > 0
+
+    /// Sets point i; i < capacity. Does not touch size.
+    void set(int i, const glm::vec3& p, const glm::vec3& n, const glm::vec2& st,
+             const glm::vec3& dpdu) noexcept {
+        for (int c = 0; c < 3; ++c) {
+            P[c][i] = p[c];
+            N[c][i] = n[c];
+            dPdu[c][i] = dpdu[c];
+        }
+        uv[0][i] = st.x;
+        uv[1][i] = st.y;
+    }
+};
+
+}  // namespace estara

@@ -1,0 +1,238 @@
+// Noise, cellnoise, Voronoi cells and turbulence: what patterns are made of.
+//
+// Lattice points get their random numbers from an integer hash instead of the usual permutation
+// table: a table lookup per corner cannot be made wide cheaply, and the table repeats every 256.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cmath>
+#include <cstdint>
+
+#include "estara/shaders/kernel.h"
+#include "estara/shaders/math.h"
+
+namespace estara {
+
+namespace detail {
+
+/// Whole and fractional part of a coordinate. Beyond +-2^24, where floats have no fraction left,
+/// the whole part stays put so that it fits an int; NaN gives a NaN fraction.
+struct Lattice {
+    int cell;
+    float offset;
+};
+ESTARA_KERNEL Lattice lattice(float x) noexcept {
+    const float whole = std::floor(x);
+    const float limit = 16777216.0f;
+    const float kept = whole >= -limit ? (whole > limit ? limit : whole) : -limit;
+    return {int(kept), x - whole};
+}
+
+/// 32-bit finaliser; constants of Wellons 2018, "Prospecting for Hash Functions" (lowbias32).
+ESTARA_KERNEL std::uint32_t scramble(std::uint32_t h) noexcept {
+    h = (h ^ (h >> 16)) * 0x7feb352du;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    return h ^ (h >> 16);
+}
+
+/// A cell's random bits; `seed` gives independent sets. The multipliers are odd and unrelated, so
+/// that the products of small coordinates do not cancel in the xor. The summands move the lattice
+/// off zero: a number and its negative differ in the bits above their lowest one, so that without
+/// them the signs of x and y would cancel in every third cell, hash(-x, -y, z) = hash(x, y, z).
+/// (Our choice of constants; the histogram, the correlations and the symmetries are tested.)
+ESTARA_KERNEL std::uint32_t hash(int x, int y, int z, std::uint32_t seed) noexcept {
+    return scramble((std::uint32_t(x) * 0x8da6b343u + 0x6c8e9cf5u) ^
+                    (std::uint32_t(y) * 0xd8163841u + 0x3ad8025fu) ^
+                    (std::uint32_t(z) * 0xcb1ab31fu + 0x2545f491u) ^ (seed * 0x9e3779b9u));
+}
+
+/// The upper 24 bits as a float in [0, 1).
+ESTARA_KERNEL float unit_float(std::uint32_t h) noexcept { return float(int(h >> 8)) * 0x1p-24f; }
+
+/// 6t^5 - 15t^4 + 10t^3 (Perlin 2002, "Improving Noise").
+ESTARA_KERNEL float fade(float t) noexcept { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
+
+ESTARA_KERNEL float lerp(float t, float a, float b) noexcept { return a + t * (b - a); }
+
+/// Flips the sign of x where bit 0 of h is set.
+ESTARA_KERNEL float signed_by(std::uint32_t h, float x) noexcept { return (h & 1u) ? -x : x; }
+
+/// (x, y, z) . one of the twelve edge directions of a cube, four of them twice (Perlin 2002).
+ESTARA_KERNEL float gradient(std::uint32_t h, float x, float y, float z) noexcept {
+    const std::uint32_t c = h & 15u;
+    const float u = c < 8u ? x : y;
+    const float v = c < 4u ? y : ((c == 12u || c == 14u) ? x : z);
+    return signed_by(h, u) + signed_by(h >> 1, v);
+}
+
+/// (x, y) . one of eight directions (+-1, +-2), (+-2, +-1).
+ESTARA_KERNEL float gradient(std::uint32_t h, float x, float y) noexcept {
+    const bool low = (h & 4u) == 0u;
+    const float u = low ? x : y, v = low ? y : x;
+    return signed_by(h, u) + 2.0f * signed_by(h >> 1, v);
+}
+
+/// x times a slope of +-1 ... +-8.
+ESTARA_KERNEL float gradient(std::uint32_t h, float x) noexcept {
+    return signed_by(h >> 3, float(int(1u + (h & 7u))) * x);
+}
+
+}  // namespace detail
+
+/// Gradient noise of a number, about [-1, 1], mean 0, exactly 0 at whole coordinates.
+/// Perlin 2002; amplitude factors .188, .507, .936 for one to three dimensions (SHADERS.md).
+/// @param seed  another seed, another noise, independent of the first
+ESTARA_KERNEL float snoise(float x, std::uint32_t seed = 0) noexcept {
+    using namespace detail;
+    const Lattice a = lattice(x);
+    const float g0 = gradient(hash(a.cell, 0, 0, seed), a.offset);
+    const float g1 = gradient(hash(a.cell + 1, 0, 0, seed), a.offset - 1.0f);
+    return 0.188f * lerp(fade(a.offset), g0, g1);
+}
+
+ESTARA_KERNEL float snoise(const glm::vec2& p, std::uint32_t seed = 0) noexcept {
+    using namespace detail;
+    const Lattice a = lattice(p.x), b = lattice(p.y);
+    const float x = a.offset, y = b.offset, u = fade(x);
+    const float g00 = gradient(hash(a.cell, b.cell, 0, seed), x, y);
+    const float g10 = gradient(hash(a.cell + 1, b.cell, 0, seed), x - 1.0f, y);
+    const float g01 = gradient(hash(a.cell, b.cell + 1, 0, seed), x, y - 1.0f);
+    const float g11 = gradient(hash(a.cell + 1, b.cell + 1, 0, seed), x - 1.0f, y - 1.0f);
+    return 0.507f * lerp(fade(y), lerp(u, g00, g10), lerp(u, g01, g11));
+}
+
+ESTARA_KERNEL float snoise(const glm::vec3& p, std::uint32_t seed = 0) noexcept {
+    using namespace detail;
+    const Lattice a = lattice(p.x), b = lattice(p.y), c = lattice(p.z);
+    const float x = a.offset, y = b.offset, z = c.offset, u = fade(x), v = fade(y);
+    const int X = a.cell, Y = b.cell, Z = c.cell;
+    const float g000 = gradient(hash(X, Y, Z, seed), x, y, z);
+    const float g100 = gradient(hash(X + 1, Y, Z, seed), x - 1.0f, y, z);
+    const float g010 = gradient(hash(X, Y + 1, Z, seed), x, y - 1.0f, z);
+    const float g110 = gradient(hash(X + 1, Y + 1, Z, seed), x - 1.0f, y - 1.0f, z);
+    const float g001 = gradient(hash(X, Y, Z + 1, seed), x, y, z - 1.0f);
+    const float g101 = gradient(hash(X + 1, Y, Z + 1, seed), x - 1.0f, y, z - 1.0f);
+    const float g011 = gradient(hash(X, Y + 1, Z + 1, seed), x, y - 1.0f, z - 1.0f);
+    const float g111 = gradient(hash(X + 1, Y + 1, Z + 1, seed), x - 1.0f, y - 1.0f, z - 1.0f);
+    const float near = lerp(v, lerp(u, g000, g100), lerp(u, g010, g110));
+    const float far = lerp(v, lerp(u, g001, g101), lerp(u, g011, g111));
+    return 0.936f * lerp(fade(z), near, far);
+}
+
+/// RSL's noise: snoise mapped to [0, 1], mean .5, exactly .5 at lattice points. For glm's float,
+/// vec2 and vec3.
+template <class Point>
+ESTARA_KERNEL float noise(const Point& p, std::uint32_t seed = 0) noexcept {
+    return 0.5f + 0.5f * snoise(p, seed);
+}
+
+/// Three independent noises, each in [0, 1]: vector or colour valued noise. The components are
+/// told apart by the hash's seed, which is a shift of the lattice without its rounding.
+template <class Point>
+ESTARA_KERNEL glm::vec3 vnoise(const Point& p) noexcept {
+    return {noise(p, 1u), noise(p, 2u), noise(p, 3u)};
+}
+
+/// Constant in each unit cell, uniform on [0, 1).
+ESTARA_KERNEL float cellnoise(const glm::vec2& p, std::uint32_t seed = 0) noexcept {
+    using namespace detail;
+    return unit_float(hash(lattice(p.x).cell, lattice(p.y).cell, 0, seed));
+}
+ESTARA_KERNEL float cellnoise(const glm::vec3& p, std::uint32_t seed = 0) noexcept {
+    using namespace detail;
+    return unit_float(hash(lattice(p.x).cell, lattice(p.y).cell, lattice(p.z).cell, seed));
+}
+
+/// The two nearest feature points of a jittered lattice, one point to a cell.
+template <class Point>
+struct Voronoi {
+    float f1, f2;    ///< distances to the nearest and the second nearest
+    Point feature1;  ///< the nearest
+};
+
+namespace detail {
+
+template <class Point>
+ESTARA_KERNEL void keep_nearest(Voronoi<Point>& v, const Point& feature, float d2) noexcept {
+    const bool first = d2 < v.f1;
+    v.f2 = first ? v.f1 : (d2 < v.f2 ? d2 : v.f2);
+    v.f1 = first ? d2 : v.f1;
+    for (int c = 0; c < Point::length(); ++c) {
+        v.feature1[c] = first ? feature[c] : v.feature1[c];
+    }
+}
+
+}  // namespace detail
+
+/// Worley's F1 and F2 (Apodaca & Gritz 1999, "Advanced RenderMan", chapter 10): the feature point of
+/// a cell is its centre moved by jitter * (cellnoise - 1/2).
+///
+/// Searches the 3^n cells around the point, as the source does. That is not exact: a nearer point
+/// can hide two cells away (f1 reaches 1.17), which shows as rare, tiny seams; they are accepted,
+/// because a 5^n search costs three to five times as much.
+/// @param jitter  [0, 1]
+ESTARA_KERNEL Voronoi<glm::vec2> voronoi(const glm::vec2& p, float jitter) noexcept {
+    using namespace detail;
+    const glm::ivec2 cell(lattice(p.x).cell, lattice(p.y).cell);
+    Voronoi<glm::vec2> v{1e30f, 1e30f, p};
+#pragma GCC unroll 9
+    for (int n = 0; n < 9; ++n) {
+        const int x = cell.x + n % 3 - 1, y = cell.y + n / 3 - 1;
+        const glm::vec2 feature(
+            float(x) + 0.5f + jitter * (unit_float(hash(x, y, 0, 1u)) - 0.5f),
+            float(y) + 0.5f + jitter * (unit_float(hash(x, y, 0, 2u)) - 0.5f));
+        const float dx = feature.x - p.x, dy = feature.y - p.y;
+        keep_nearest(v, feature, dx * dx + dy * dy);
+    }
+    return {std::sqrt(v.f1), std::sqrt(v.f2), v.feature1};
+}
+
+ESTARA_KERNEL Voronoi<glm::vec3> voronoi(const glm::vec3& p, float jitter) noexcept {
+    using namespace detail;
+    const glm::ivec3 cell(lattice(p.x).cell, lattice(p.y).cell, lattice(p.z).cell);
+    Voronoi<glm::vec3> v{1e30f, 1e30f, p};
+#pragma GCC unroll 27
+    for (int n = 0; n < 27; ++n) {
+        const int x = cell.x + n % 3 - 1, y = cell.y + n / 3 % 3 - 1, z = cell.z + n / 9 - 1;
+        const glm::vec3 feature(
+            float(x) + 0.5f + jitter * (unit_float(hash(x, y, z, 1u)) - 0.5f),
+            float(y) + 0.5f + jitter * (unit_float(hash(x, y, z, 2u)) - 0.5f),
+            float(z) + 0.5f + jitter * (unit_float(hash(x, y, z, 3u)) - 0.5f));
+        const float dx = feature.x - p.x, dy = feature.y - p.y, dz = feature.z - p.z;
+        keep_nearest(v, feature, dx * dx + dy * dy + dz * dz);
+    }
+    return {std::sqrt(v.f1), std::sqrt(v.f2), v.feature1};
+}
+
+/// How many terms clamped turbulence has at filter width w: m + 1 with m = ceil(log2(1 / 2w)), at
+/// least 1 and at most 24 (a float has no detail beyond).
+/// @param w  filter width in units of the turbulence's lattice, > 0
+inline int octaves_for(float w) noexcept {
+    const float m = std::ceil(std::log2(0.5f / w));
+    return m >= 0.0f ? (m > 23.0f ? 24 : int(m) + 1) : 1;
+}
+
+/// What a term of turbulence is made of.
+enum class Phi {
+    noise,     ///< noise, mean .5
+    deviation  ///< |noise - 1/2|: creases along its zeros, which become veins
+};
+
+/// Term k of turbulence clamped at the filter width (RenderMan Companion style; SHADERS.md,
+/// section 1): 2^-k phi(2^k q), where octaves finer than twice the width are left out and the last
+/// one is faded in. The factor clamp(2^-k / w - 1, 0, 1) is 1 for the whole octaves, beta for the
+/// last and 0 beyond, so one expression serves all terms. The turbulence is the sum over
+/// k < octaves_for(w); terms more than that change nothing.
+/// @param q  position in units of the lattice
+/// @param w  filter width in the same units, > 0: a voxel's edge, never a pixel's
+/// @param k  [0, 24)
+template <Phi phi>
+ESTARA_KERNEL float turbulence_term(const glm::vec3& q, float w, int k) noexcept {
+    const float frequency = float(1 << k), amplitude = 1.0f / frequency;
+    const float n = snoise(q * frequency);
+    const float term = phi == Phi::noise ? 0.5f + 0.5f * n : std::fabs(0.5f * n);
+    return amplitude * clamp(amplitude / w - 1.0f, 0.0f, 1.0f) * term;
+}
+
+}  // namespace estara

@@ -1,0 +1,138 @@
+// What a program may know about the shaders: their names, parameters and channels, and a shader
+// with its parameters bound. The only header of this folder that the other folders need, besides
+// the three of the contract.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estara/shaders/batch.h"
+#include "estara/shaders/seen.h"
+
+namespace estara {
+
+enum class Unit { none, per_length, length, color };
+
+/// Which half of a shader a parameter belongs to. One that only view() uses may change without a
+/// new bake (tested for every shader).
+enum class Part { bake, view };
+enum class ValueType { number, integer, color };
+
+/// How a unit is written in help texts: "", "1/length", "length", "linear Rec. 709".
+std::string_view to_string(Unit unit) noexcept;
+
+/// The shortest text that reads back as the same float.
+std::string to_string(float value);
+/// Likewise, "0.3,0.12,0.03".
+std::string to_string(const glm::vec3& value);
+
+/// What bake() is compiled for; the bits of its results are the same on all of them.
+enum class InstructionSet { baseline, sse42, avx2, avx512 };
+
+/// What decides a shader's colour.
+enum class Domain {
+    point,    ///< P alone: it may be evaluated anywhere in space, so at voxel centres
+    surface,  ///< N, uv or dPdu too: it exists on the surface only
+};
+
+struct ParamInfo {
+    std::string_view name;
+    ValueType type;
+    glm::vec3 default_value;  ///< numbers and integers use x
+    float min, max;           ///< inclusive; of every component for a colour
+    Unit unit;
+    Part part;
+    std::string_view help;
+    int components() const noexcept { return type == ValueType::color ? 3 : 1; }
+};
+
+struct ChannelInfo {
+    std::string_view name;  ///< also the name of the grid in the .vdb
+    int components;         ///< 1 or 3
+    std::string_view help;
+};
+
+struct ShaderInfo {
+    std::string_view name;
+    std::string_view summary;
+    std::vector<ParamInfo> params;
+    std::vector<ChannelInfo> channels;  ///< in the order of the floats of a baked record
+    int baked_floats;                   ///< sum of the channels' components
+};
+
+/// A parameter as the user gave it.
+struct Setting {
+    std::string name;
+    std::vector<float> value;  ///< 1 number, or 3 for a colour
+};
+
+/// Something wrong with a user's setting, as data: the caller knows where it was written and makes
+/// the message ("shader 'wood' has no parameter 'ringscael'; did you mean ...").
+struct Problem {
+    std::string setting;  ///< the name the user wrote
+    std::string what;     ///< "shader 'wood' has no parameter 'ringscael'"
+    std::string hint;     ///< "did you mean 'ringscale'? it has: ringscale, lightwood, ..."; may be empty
+};
+
+/// A shader with its parameters, type-erased. Immutable; any thread may use one at any time.
+class BoundShader {
+public:
+    virtual ~BoundShader() = default;
+
+    virtual const ShaderInfo& info() const noexcept = 0;
+    virtual Domain domain() const noexcept = 0;
+
+    /// Value of every parameter, in the order of info().params.
+    virtual std::vector<glm::vec3> values() const = 0;
+
+    /// The view-independent part of a batch: planes[k * SurfaceBatch::capacity + i] becomes float k
+    /// (of info().baked_floats) of point i. Bit-identical whatever the batch a point is in and
+    /// whatever instruction set the machine has.
+    virtual void bake(const SurfaceBatch& in, float* planes) const noexcept = 0;
+
+    /// The view-dependent part: Ci[i] = outgoing colour of point i of planes as bake() lays them
+    /// out, seen as seen[i].
+    virtual void view(const float* planes, std::span<const Seen> seen,
+                      glm::vec3* Ci) const noexcept = 0;
+};
+
+using BoundShaderPtr = std::shared_ptr<const BoundShader>;
+
+/// All shaders, in the order of library/all.h.
+std::span<const ShaderInfo> all_shaders();
+
+/// The shader of that name, or nullptr.
+const ShaderInfo* find_shader(std::string_view name);
+
+/// The word of `known` nearest to `word` (edit distance at most a third of it, or
+/// one letter of a short one), or "".
+std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known);
+
+/// Names joined by ", ".
+std::string shader_names();
+
+struct BindResult {
+    BoundShaderPtr shader;          ///< null if there are problems
+    std::vector<Problem> problems;  ///< all of them, not just the first
+};
+
+/// Gives a shader its parameters: the defaults, overridden by settings.
+/// @param name    must exist: check with find_shader() first (an unknown one is a Problem too)
+/// @param has_uv  whether the mesh has texture coordinates: cobblestone chooses its variant by it
+/// @param limit   bake() uses the widest instruction set of the machine, but none wider than this
+BindResult bind_shader(std::string_view name, std::span<const Setting> settings, bool has_uv,
+                       InstructionSet limit = InstructionSet::avx512);
+
+/// "ringscale=10 lightwood=0.3,0.12,0.03 ..." - every parameter, in order, shortest exact floats.
+std::string describe_values(const BoundShader& shader);
+
+/// Two shaders that bake alike have the same digest: 16 hex digits over name, version and every
+/// parameter of Part::bake.
+std::string shader_digest(const BoundShader& shader);
+
+}  // namespace estara

@@ -1,0 +1,39 @@
+// What the view-dependent half of a shader may know: how the point is looked at and lit.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+namespace estara {
+
+class Camera;
+
+/// Unit vector from the surface to the eye, world space. Only a Camera can make one, so code that
+/// is handed no ViewDirection cannot depend on the view.
+class ViewDirection {
+public:
+    const glm::vec3& vec() const noexcept { return m_v; }
+
+private:
+    friend class Camera;
+    explicit ViewDirection(const glm::vec3& v) noexcept : m_v(v) {}
+    glm::vec3 m_v;
+};
+
+/// One light as a surface point receives it.
+struct Light {
+    glm::vec3 L;   ///< unit vector from the surface towards the light, world space
+    glm::vec3 Cl;  ///< irradiance at normal incidence / pi, linear Rec. 709; 0 in shadow
+};
+
+/// A surface point as one camera sees it. It has no position: whatever depends on where the point
+/// is has been computed by bake() and is in Baked.
+struct Seen {
+    glm::vec3 N;                   ///< shading normal turned to the side of the eye (N_f), world, unit
+    ViewDirection V;               ///< towards the eye
+    glm::vec3 E;                   ///< diffuse light on N: sum of Cl <N.L>+, shadows included
+    glm::vec3 A;                   ///< sum of the ambient lights
+    std::span<const Light> lights;
+};
+
+}  // namespace estara

@@ -1,0 +1,116 @@
+// What a shader is: two functions with one record between them.
+//
+//     Baked      bake(const SurfacePoint&) const noexcept;       where it is
+//     glm::vec3  view(const Baked&, const Seen&) const noexcept;  how it looks from here
+//
+// The members of a shader are its parameters, the members of Baked its channels, and each is
+// declared once, in params() and channels(). is_shader() checks at compile time that nothing else
+// comes along: this is what makes the baked half reusable in every frame. A shader may also have
+//
+//     Domain  domain() const noexcept;              what decides its colour; default: Domain::point
+//     float   octave(const SurfacePoint&, int k) const noexcept;  a term of a sum over octaves, whose
+//                                                   length depends on the filter width: octave_sum
+//     float   octave_frequency() const noexcept;    lattice cells per length in term 0; default: 1
+//     S       resolved(bool has_uv) const noexcept; settles parameters that depend on the mesh
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <concepts>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+
+#include "estara/shaders/kernel.h"
+#include "estara/shaders/registry.h"
+#include "estara/shaders/seen.h"
+#include "estara/shaders/surface_point.h"
+
+namespace estara {
+
+/// A parameter of shader S: where it is kept, what it may be and what it means.
+template <class S, class T>
+struct Param {
+    std::string_view name;
+    T S::*member;
+    Part part;  ///< which half uses it
+    Unit unit;
+    float min, max;  ///< inclusive; of each component
+    std::string_view help;
+};
+
+/// A channel of the record that bake() leaves for view(): a grid of the .vdb.
+template <class B, class T>
+struct Channel {
+    std::string_view name;
+    T B::*member;
+    std::string_view help;
+};
+
+/// Whether S has a sum over octaves; is_shader() refuses an octave() of another form.
+template <class S>
+concept HasOctaves = requires(const S& shader, const SurfacePoint& x) {
+    { shader.octave(x, 0) } noexcept -> std::same_as<float>;
+};
+
+namespace detail {
+
+template <class S, class T>
+constexpr std::size_t bytes_of(const Param<S, T>&) {
+    static_assert(std::is_same_v<T, float> || std::is_same_v<T, int> || std::is_same_v<T, glm::vec3>,
+                  "a parameter is a float, an int or a vec3");
+    return sizeof(T);
+}
+template <class B, class T>
+constexpr std::size_t bytes_of(const Channel<B, T>&) {
+    static_assert(std::is_same_v<T, float> || std::is_same_v<T, glm::vec3>,
+                  "a channel is a float or a vec3");
+    return sizeof(T);
+}
+
+template <class Tuple>
+constexpr std::size_t bytes_declared(const Tuple& declared) {
+    return std::apply([](const auto&... one) { return (std::size_t{0} + ... + bytes_of(one)); },
+                      declared);
+}
+
+}  // namespace detail
+
+/// Refuses, with a sentence, a type that is not a shader. True for every shader.
+template <class S>
+consteval bool is_shader() {
+    using Baked = typename S::Baked;
+    static_assert(std::is_nothrow_invocable_r_v<Baked, decltype(&S::bake), const S&, const SurfacePoint&>,
+                  "bake() takes a SurfacePoint and nothing else; it is const and noexcept");
+    static_assert(std::is_nothrow_invocable_r_v<glm::vec3, decltype(&S::view), const S&, const Baked&, const Seen&>,
+                  "view() takes a Baked and a Seen and nothing else; it is const and noexcept");
+    static_assert(std::is_trivially_copyable_v<S> && std::is_default_constructible_v<S>,
+                  "a shader is a plain bag of parameters: it owns nothing");
+    static_assert(sizeof(S) == detail::bytes_declared(S::params()),
+                  "every member of a shader is one of its params(): nothing else comes along");
+    static_assert(std::is_trivially_copyable_v<Baked> && sizeof(Baked) == detail::bytes_declared(S::channels()),
+                  "every member of Baked is one of its channels(): what is not stored cannot be read back");
+    static_assert(HasOctaves<S> || !requires { &S::octave; },
+                  "octave() takes a SurfacePoint and an int and returns a float; it is const and noexcept");
+    return true;
+}
+
+template <class S>
+Domain domain_of(const S& shader) noexcept {
+    if constexpr (requires { shader.domain(); }) {
+        return shader.domain();
+    } else {
+        return Domain::point;
+    }
+}
+
+template <class S>
+float octave_frequency_of(const S& shader) noexcept {
+    if constexpr (requires { shader.octave_frequency(); }) {
+        return shader.octave_frequency();
+    } else {
+        return 1.0f;
+    }
+}
+
+}  // namespace estara

@@ -1,0 +1,26 @@
+// EXPECT: bake() takes a SurfacePoint and nothing else; it is const and noexcept
+#include "estara/shaders/shader.h"
+
+using namespace estara;
+
+// Its colour is baked with the direction it is seen from.
+struct Chalk {
+    float lightness = 0.9f;
+    static constexpr auto params() {
+        return std::tuple{
+            Param{"lightness", &Chalk::lightness, Part::bake, Unit::none, 0.0f, 1.0f, ""}};
+    }
+
+    struct Baked {
+        glm::vec3 color;
+    };
+    static constexpr auto channels() { return std::tuple{Channel{"color", &Baked::color, ""}}; }
+
+    float octave(const SurfacePoint& x, int k) const noexcept { return x.P.x / float(1 << k); }
+    Baked bake(const SurfacePoint&, const ViewDirection& V) const noexcept {
+        return {lightness * V.vec()};
+    }
+    glm::vec3 view(const Baked& b, const Seen& s) const noexcept { return b.color * s.E; }
+};
+
+static_assert(is_shader<Chalk>());

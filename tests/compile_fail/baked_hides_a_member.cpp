@@ -1,0 +1,27 @@
+// EXPECT: every member of Baked is one of its channels(): what is not stored cannot be read back
+#include "estara/shaders/shader.h"
+
+using namespace estara;
+
+// A member of Baked that no grid keeps.
+struct Chalk {
+    float lightness = 0.9f;
+    static constexpr auto params() {
+        return std::tuple{
+            Param{"lightness", &Chalk::lightness, Part::bake, Unit::none, 0.0f, 1.0f, ""}};
+    }
+
+    struct Baked {
+        glm::vec3 color;
+        float gloss;
+    };
+    static constexpr auto channels() { return std::tuple{Channel{"color", &Baked::color, ""}}; }
+
+    float octave(const SurfacePoint& x, int k) const noexcept { return x.P.x / float(1 << k); }
+    Baked bake(const SurfacePoint& x) const noexcept {
+        return {glm::vec3(lightness * x.octave_sum), 0.5f};
+    }
+    glm::vec3 view(const Baked& b, const Seen& s) const noexcept { return b.color * s.E; }
+};
+
+static_assert(is_shader<Chalk>());

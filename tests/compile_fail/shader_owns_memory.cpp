@@ -1,0 +1,29 @@
+// EXPECT: a shader is a plain bag of parameters: it owns nothing
+#include <vector>
+
+#include "estara/shaders/shader.h"
+
+using namespace estara;
+
+// A parameter on the heap: copies of the shader are not its bytes.
+struct Chalk {
+    float lightness = 0.9f;
+    std::vector<float> curve;
+    static constexpr auto params() {
+        return std::tuple{
+            Param{"lightness", &Chalk::lightness, Part::bake, Unit::none, 0.0f, 1.0f, ""}};
+    }
+
+    struct Baked {
+        glm::vec3 color;
+    };
+    static constexpr auto channels() { return std::tuple{Channel{"color", &Baked::color, ""}}; }
+
+    float octave(const SurfacePoint& x, int k) const noexcept { return x.P.x / float(1 << k); }
+    Baked bake(const SurfacePoint& x) const noexcept {
+        return {glm::vec3(lightness * x.octave_sum)};
+    }
+    glm::vec3 view(const Baked& b, const Seen& s) const noexcept { return b.color * s.E; }
+};
+
+static_assert(is_shader<Chalk>());

@@ -1,0 +1,255 @@
+// The lookup structure of rendering, against OpenVDB's own sampler.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estara/grids/bricks.h"
+#include "estara/grids/vdb_sampler.h"
+#include "example_grids.h"
+
+namespace estara {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+/// Bound of bricks.h for a level: half a code of the widest possible range, and rounding.
+float bound(const GridLevel& level, std::size_t c) {
+    const auto [low, high] = std::minmax_element(level.planes[c].begin(), level.planes[c].end());
+    return (*high - *low) / 131070.0f + 8e-7f * std::max(std::abs(*low), std::abs(*high));
+}
+
+/// Both samplers on every level, at count points of the sphere.
+void expect_like_openvdb(const TextureGrid& grid, const Sphere& sphere, int count) {
+    const TemporaryFolder folder;
+    write_vdb(folder.file("s.vdb"), {grid}, {});
+    const VdbSampler oracle(folder.file("s.vdb"), grid.object);
+    const BrickPyramid bricks(read_vdb(folder.file("s.vdb")).front());
+    ASSERT_EQ(oracle.levels(), bricks.levels());
+    ASSERT_EQ(bricks.floats(), grid.floats());
+    const std::vector<glm::vec3> points = sphere.random_points(count);
+    for (int n = 0; n < bricks.levels(); ++n) {
+        std::vector<float> bounds;
+        for (std::size_t c = 0; c < std::size_t(grid.floats()); ++c) {
+            bounds.push_back(bound(grid.levels[std::size_t(n)], c));
+        }
+        for (const glm::vec3& P : points) {
+            float expected[BrickPyramid::max_floats], got[BrickPyramid::max_floats];
+            ASSERT_TRUE(oracle.lookup(P, n, expected));
+            ASSERT_TRUE(bricks.lookup(P, n, got));
+            for (int c = 0; c < grid.floats(); ++c) {
+                ASSERT_NEAR(got[c], expected[c], bounds[std::size_t(c)])
+                    << "level " << n << " float " << c;
+            }
+        }
+    }
+}
+
+TEST(BrickPyramid, AgreesWithOpenVdbOnEveryLevel) {
+    expect_like_openvdb(complete_grid("", 0.02), {}, 100'000);
+}
+
+TEST(BrickPyramid, AgreesWithOpenVdbForAnyNumberOfFloats) {
+    for (int n = 1; n <= BrickPyramid::max_floats; ++n) {
+        std::vector<GridChannel> channels;
+        if (n >= 3) channels.push_back({"color", 3});
+        for (int i = n >= 3 ? 3 : 0; i < n; ++i) {
+            channels.push_back({"weight" + std::to_string(i), 1});
+        }
+        TextureGrid grid = sphere_grid({}, 0.1, channels);
+        add_levels(grid);
+        expect_like_openvdb(grid, {}, 2'000);
+    }
+}
+
+TEST(BrickPyramid, AgreesWithOpenVdbFarFromTheOrigin) {
+    // Points in float are 0.0005 apart there: a twentieth of a voxel, which the grid allows for.
+    const Sphere sphere{{10'000.0, -10'000.0, 10'000.0}, 0.5};
+    TextureGrid grid = sphere_grid(sphere, 0.01, {{"color", 3}}, waves, 0.2);
+    add_levels(grid);
+    expect_like_openvdb(grid, sphere, 20'000);
+}
+
+TEST(BrickPyramid, AgreesWithOpenVdbOnAnOpenSurface) {
+    const Sphere sphere{{0.0, 0.0, 0.0}, 1.0, true};
+    TextureGrid grid = sphere_grid(sphere, 0.05, {{"color", 3}});
+    add_levels(grid);
+    expect_like_openvdb(grid, sphere, 20'000);
+}
+
+TEST(BrickPyramid, ReturnsTheVoxelAtItsCentre) {
+    TextureGrid grid = complete_grid("", 0.0625);  // a power of two: positions are exact
+    grid.origin = {-2.0, 3.0, 0.5};
+    const BrickPyramid bricks(grid);
+    for (int n = 0; n < bricks.levels(); ++n) {
+        const GridLevel& level = grid.levels[std::size_t(n)];
+        for (const Block& block : level.blocks) {
+            std::uint64_t row = block.first;
+            for (int i = 0; i < 512; ++i) {
+                if (!block.active.test(i)) continue;
+                const glm::ivec3 v = block.origin + glm::ivec3(i >> 6, (i >> 3) & 7, i & 7);
+                const glm::dvec3 P = grid.origin + std::ldexp(0.0625, n) * glm::dvec3(v);
+                float got[4];
+                ASSERT_TRUE(bricks.lookup(glm::vec3(P), n, got));
+                for (std::size_t c = 0; c < 4; ++c) {
+                    ASSERT_NEAR(got[c], level.planes[c][row], bound(level, c));
+                }
+                ++row;
+            }
+        }
+    }
+}
+
+TEST(BrickPyramid, ReturnsAConstantExactly) {
+    TextureGrid grid = sphere_grid({}, 0.05, {{"color", 3}},
+                                   [](const glm::dvec3&, int c) { return 0.1f + 0.3f * float(c); });
+    add_levels(grid);
+    const BrickPyramid bricks(grid);
+    for (const glm::vec3& P : Sphere{}.random_points(10'000)) {
+        float got[3];
+        ASSERT_TRUE(bricks.lookup(P, 0.11f, got));
+        for (int c = 0; c < 3; ++c) ASSERT_EQ(got[c], 0.1f + 0.3f * float(c));
+    }
+}
+
+TEST(BrickPyramid, IsTheMeanAwayFromTheSurface) {
+    const TextureGrid grid = complete_grid();
+    const BrickPyramid bricks(grid);
+    double mean[4] = {};
+    for (std::size_t c = 0; c < 4; ++c) {
+        for (const float v : grid.levels[0].planes[c]) mean[c] += v;
+        mean[c] /= double(grid.levels[0].voxels());
+    }
+    const auto expect_mean = [&](const float* got) {
+        for (int c = 0; c < 4; ++c) EXPECT_FLOAT_EQ(got[c], float(mean[c]));
+    };
+    const float huge = std::numeric_limits<float>::max();
+    for (const glm::vec3& P : {glm::vec3(5.0f), glm::vec3(-5.0f), glm::vec3(0.3f, -0.2f, 9.0f),
+                               glm::vec3(1e10f), glm::vec3(huge, 0.0f, 0.0f), glm::vec3(-huge),
+                               glm::vec3(infinity), glm::vec3(0.0f, -infinity, 0.0f),
+                               glm::vec3(not_a_number), glm::vec3(0.3f, not_a_number, 0.1f)}) {
+        float got[4];
+        for (int n = 0; n < bricks.levels(); ++n) {
+            EXPECT_FALSE(bricks.lookup(P, n, got)) << P.x << ' ' << P.y << ' ' << P.z;
+            expect_mean(got);
+        }
+        EXPECT_FALSE(bricks.lookup(P, 0.3f, got));
+        expect_mean(got);
+    }
+    float got[4];
+    EXPECT_FALSE(bricks.lookup(glm::vec3(0.3f, -0.2f, 0.1f), 0, got)) << "centre of the sphere";
+    expect_mean(got);
+}
+
+TEST(BrickPyramid, IsNeverOutsideTheValuesOfItsVoxelsBesideTheSurface) {
+    const TextureGrid grid = complete_grid();
+    const BrickPyramid bricks(grid);
+    const auto [low, high] =
+        std::minmax_element(grid.levels[0].planes[0].begin(), grid.levels[0].planes[0].end());
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> uniform(-1.5f, 1.5f);
+    for (int i = 0; i < 100'000; ++i) {
+        float got[4];
+        bricks.lookup(glm::vec3(uniform(random), uniform(random), uniform(random)), 0, got);
+        ASSERT_GE(got[0], *low - 1e-6f);
+        ASSERT_LE(got[0], *high + 1e-6f);
+    }
+}
+
+TEST(BrickPyramid, LevelFollowsTheFootprint) {
+    const BrickPyramid bricks(complete_grid("", 0.0625));
+    const auto last = float(bricks.levels() - 1);
+    const float bias = BrickPyramid::level_bias;
+    EXPECT_FLOAT_EQ(bricks.level_for(0.0625f * std::exp2(1.5f - bias)), 1.5f);
+    EXPECT_EQ(bricks.level_for(0.0625f * std::exp2(-bias)), 0.0f);
+    EXPECT_EQ(bricks.level_for(1e-30f), 0.0f);
+    EXPECT_EQ(bricks.level_for(0.0f), 0.0f);
+    EXPECT_EQ(bricks.level_for(-1.0f), 0.0f);
+    EXPECT_EQ(bricks.level_for(-infinity), 0.0f);
+    EXPECT_EQ(bricks.level_for(not_a_number), 0.0f);
+    EXPECT_EQ(bricks.level_for(1e30f), last);
+    EXPECT_EQ(bricks.level_for(infinity), last);
+}
+
+TEST(BrickPyramid, BlendsLevelsWithoutAStep) {
+    const TextureGrid grid = complete_grid();
+    const BrickPyramid bricks(grid);
+    for (const glm::vec3& P : Sphere{}.random_points(200)) {
+        float last[4], at_level[4];
+        ASSERT_TRUE(bricks.lookup(P, 0.0f, last));
+        ASSERT_TRUE(bricks.lookup(P, 0, at_level));
+        EXPECT_EQ(last[0], at_level[0]);
+        for (float footprint = 0.02f; footprint < 10.0f; footprint *= 1.01f) {
+            float got[4];
+            ASSERT_TRUE(bricks.lookup(P, footprint, got));
+            // 1 % is 0.0144 levels, and neighbouring levels differ by less than 1 here.
+            for (int c = 0; c < 4; ++c) ASSERT_NEAR(got[c], last[c], 0.0145f);
+            std::copy_n(got, 4, last);
+        }
+        ASSERT_TRUE(bricks.lookup(P, bricks.levels() - 1, at_level));
+        EXPECT_EQ(last[0], at_level[0]);
+    }
+}
+
+/// Blocks of one voxel each at both ends of a cube of the given extent.
+TextureGrid corners(int extent) {
+    TextureGrid grid;
+    grid.channels = {{"color", 3}};
+    GridLevel& level = grid.levels.emplace_back();
+    level.planes.resize(3);
+    for (int n = 0; n < 8; ++n) {
+        Block block;
+        block.origin = (extent - 8) * glm::ivec3(n >> 2, (n >> 1) & 1, n & 1);
+        block.first = std::uint64_t(n);
+        block.active.set(BlockMask::bit(5, 6, 7));
+        level.blocks.push_back(block);
+        for (auto& plane : level.planes) plane.push_back(float(n));
+    }
+    return grid;
+}
+
+TEST(BrickPyramid, StaysSmallWhenBlocksAreFarApart) {
+    const int extent = 16384;
+    const BrickPyramid bricks(corners(extent));
+    EXPECT_LT(bricks.bytes(), 1u << 20);
+    for (int n = 0; n < 8; ++n) {
+        const glm::ivec3 origin = (extent - 8) * glm::ivec3(n >> 2, (n >> 1) & 1, n & 1);
+        float got[3];
+        ASSERT_TRUE(bricks.lookup(glm::vec3(origin) + glm::vec3(5.0f, 6.0f, 7.0f), 0, got));
+        EXPECT_EQ(got[0], float(n));
+    }
+    float got[3];
+    EXPECT_FALSE(bricks.lookup(glm::vec3(8192.0f), 0, got));
+    EXPECT_EQ(got[0], 3.5f);
+}
+
+TEST(BrickPyramid, TakesExtentsUpToTwoToTheEighteen) {
+    const BrickPyramid bricks(corners(1 << 18));
+    EXPECT_LT(bricks.bytes(), 16u << 20);
+    float got[3];
+    ASSERT_TRUE(bricks.lookup(glm::vec3(262141.0f, 262142.0f, 262143.0f), 0, got));
+    EXPECT_EQ(got[0], 7.0f);
+    TextureGrid wider = corners((1 << 18) + 8);
+    wider.object = "hair";
+    EXPECT_EQ(error_of([&] { BrickPyramid(std::move(wider)); }),
+              "object \"hair\": 262152 voxels wide, more than 262144; bake it with larger voxels");
+}
+
+TEST(BrickPyramid, RefusesMoreFloatsThanALookupReturns) {
+    TextureGrid grid = sphere_grid({}, 0.2, {{"color", 3}, {"a", 3}, {"b", 3}});
+    grid.object = "vase";
+    EXPECT_EQ(error_of([&] { BrickPyramid pyramid(grid); }),
+              "object \"vase\": 9 floats a voxel; a lookup takes 1 to 8");
+}
+
+TEST(BrickPyramid, RefusesValuesThatAreNotFinite) {
+    TextureGrid grid = complete_grid();
+    grid.levels[1].planes[3][5] = not_a_number;
+    EXPECT_EQ(error_of([&] { BrickPyramid pyramid(grid); }),
+              "texture grid: channel \"specular\" has a value on level 1 that is not finite");
+}
+
+}  // namespace
+}  // namespace estara

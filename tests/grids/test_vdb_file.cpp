@@ -1,0 +1,109 @@
+// What is written to a .vdb file is what is read from it.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "estara/grids/texture_grid.h"
+#include "estara/grids/vdb_sampler.h"
+#include "example_grids.h"
+
+namespace estara {
+namespace {
+
+/// Length and text, as a .vdb file stores names.
+std::string stored(const std::string& text) {
+    std::string bytes(4, '\0');
+    bytes[0] = char(text.size());
+    return bytes + text;
+}
+
+TEST(VdbFile, GivesBackWhatWasWritten) {
+    const TemporaryFolder folder;
+    const TextureGrid grid = complete_grid();
+    for (const Compression how : {Compression::zip, Compression::blosc, Compression::none}) {
+        const std::uint64_t size = write_vdb(folder.file("a.vdb"), {grid}, {how, false});
+        EXPECT_EQ(size, std::filesystem::file_size(folder.file("a.vdb")));
+        const std::vector<TextureGrid> read = read_vdb(folder.file("a.vdb"));
+        ASSERT_EQ(read.size(), 1u);
+        expect_same(read[0], grid);
+    }
+    EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.vdb"});
+}
+
+TEST(VdbFile, GivesBackHalfFloatsThatWereRoundedBefore) {
+    const TemporaryFolder folder;
+    TextureGrid grid = complete_grid();
+    const std::uint64_t full = write_vdb(folder.file("a.vdb"), {grid}, {Compression::none, false});
+    write_vdb(folder.file("rounded_by_writing.vdb"), {grid}, {Compression::zip, true});
+    round_to_half(grid);
+    const std::uint64_t half = write_vdb(folder.file("a.vdb"), {grid}, {Compression::none, true});
+    EXPECT_LT(half, full * 2 / 3);
+    expect_same(read_vdb(folder.file("a.vdb"))[0], grid);
+    expect_same(read_vdb(folder.file("rounded_by_writing.vdb"))[0], grid);
+}
+
+TEST(VdbFile, HoldsSeveralObjects) {
+    const TemporaryFolder folder;
+    const std::vector<TextureGrid> grids = {complete_grid("saucer", 0.1),
+                                            complete_grid("vase.001")};
+    write_vdb(folder.file("a.vdb"), grids, {});
+    const std::vector<TextureGrid> read = read_vdb(folder.file("a.vdb"));
+    ASSERT_EQ(read.size(), 2u);
+    expect_same(read[0], grids[0]);
+    expect_same(read[1], grids[1]);
+    const VdbSampler sampler(folder.file("a.vdb"), "vase.001");
+    EXPECT_EQ(sampler.levels(), int(grids[1].levels.size()));
+    EXPECT_EQ(error_of([&] { VdbSampler s(folder.file("a.vdb"), "cup"); }),
+              folder.file("a.vdb") + ": no object \"cup\"; it has: \"saucer\", \"vase.001\"");
+}
+
+TEST(VdbFile, NamesGridsByChannelObjectAndLevel) {
+    const TemporaryFolder folder;
+    write_vdb(folder.file("a.vdb"), {complete_grid(), complete_grid("vase")}, {});
+    const std::string bytes = read_bytes(folder.file("a.vdb"));
+    const std::string colors = stored("Tree_vec3s_5_4_3"), numbers = stored("Tree_float_5_4_3");
+    for (const char* name : {"color", "color_level_1", "color_vase", "color_vase_level_1"}) {
+        EXPECT_NE(bytes.find(stored(name) + colors), std::string::npos) << name;
+    }
+    for (const char* name : {"specular", "specular_level_1", "specular_vase", "surface", "density",
+                             "surface_vase", "density_vase"}) {
+        EXPECT_NE(bytes.find(stored(name) + numbers), std::string::npos) << name;
+    }
+    EXPECT_EQ(bytes.find(stored("surface_level_1")), std::string::npos);
+}
+
+TEST(VdbFile, CanBeWrittenAgainFromWhatWasRead) {
+    const TemporaryFolder folder;
+    write_vdb(folder.file("a.vdb"), {complete_grid()}, {});
+    const std::vector<TextureGrid> read = read_vdb(folder.file("a.vdb"));
+    write_vdb(folder.file("b.vdb"), read, {});
+    expect_same(read_vdb(folder.file("b.vdb"))[0], read[0]);
+}
+
+TEST(VdbFile, KeepsAnEmptyListOfParameters) {
+    const TemporaryFolder folder;
+    TextureGrid grid = complete_grid();
+    grid.params.clear();
+    grid.errors.clear();
+    write_vdb(folder.file("a.vdb"), {grid}, {});
+    expect_same(read_vdb(folder.file("a.vdb"))[0], grid);
+}
+
+TEST(VdbFile, DiffersOnlyInItsRandomIdWhateverTheThreadCount) {
+    const TemporaryFolder folder;
+    const TextureGrid grid = complete_grid();
+    const auto written_with = [&](int threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                        std::size_t(threads));
+        write_vdb(folder.file("a.vdb"), {grid}, {});
+        return read_bytes(folder.file("a.vdb"));
+    };
+    std::string one = written_with(1), four = written_with(4);
+    ASSERT_EQ(one.size(), four.size());
+    EXPECT_NE(one.substr(21, 36), four.substr(21, 36));
+    one.erase(21, 36);
+    four.erase(21, 36);
+    EXPECT_TRUE(one == four);
+}
+
+}  // namespace
+}  // namespace estara
