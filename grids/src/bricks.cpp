@@ -21,15 +21,17 @@ constexpr int table_size = 16 * 16 * 16;                       // entries of a t
 constexpr int brick_bits = 3, table_bits = 7, root_bits = 11;  // 8, 16 * 8, 16 * 16 * 8 voxels
 constexpr int max_extent = 1 << 18;
 
-/// Four floats of a voxel, side by side in a register (an extension of g++ and clang).
-using Codes4 [[gnu::vector_size(8)]] = std::uint16_t;
+/// Four floats of a voxel, side by side in a register (extensions of g++ and clang).
+using Codes8 [[gnu::vector_size(16)]] = std::uint16_t;
 using Ints4 [[gnu::vector_size(16)]] = std::int32_t;
 using Floats4 [[gnu::vector_size(16)]] = float;
 
+/// Reads eight codes and takes four: each beside a zero is a 32-bit whole number.
 Floats4 load4(const std::uint16_t* codes) noexcept {
-    Codes4 c;
+    Codes8 c;
     std::memcpy(&c, codes, sizeof c);
-    return __builtin_convertvector(__builtin_convertvector(c, Ints4), Floats4);
+    const Codes8 wide = __builtin_shufflevector(c, Codes8{}, 0, 8, 1, 9, 2, 10, 3, 11);
+    return __builtin_convertvector(std::bit_cast<Ints4>(wide), Floats4);
 }
 
 Floats4 load4(const float* values) noexcept {
@@ -112,6 +114,22 @@ std::string title(const TextureGrid& grid) {
 
 }  // namespace
 
+/// A point located on a level: its cell's first voxel, its brick's range and where in the cell it is.
+struct BrickPyramid::Tap {
+    const std::uint16_t* voxel = nullptr;  ///< null: no brick there
+    const float* range = nullptr;
+    glm::vec3 f{0.0f};
+
+    /// Asks memory for the four pairs of voxels and the range.
+    void prefetch(int floats) const noexcept {
+        if (voxel == nullptr) return;
+        for (int row = 0; row < 4; ++row) {
+            __builtin_prefetch(voxel + ((row >> 1) * side + (row & 1)) * side * floats);
+        }
+        __builtin_prefetch(range);
+    }
+};
+
 /// One level: root table over the bounding box -> tables of 16^3 -> tables of 16^3 brick numbers.
 /// Table 0 of both kinds is full of zeros and brick 0 means none, so that the way down needs no
 /// test but the last.
@@ -141,9 +159,8 @@ struct BrickPyramid::Level {
         return bottom[std::size_t(t) * table_size + in_table(voxel, brick_bits)];
     }
 
-    template <int N>
-    bool lookup(const glm::dvec3& from_origin, float* out) const noexcept;
-    bool lookup(const glm::dvec3& from_origin, int floats, float* out) const noexcept;
+    /// @param from_origin  position relative to index (0, 0, 0), object space
+    Tap locate(const glm::dvec3& from_origin, int floats) const noexcept;
 };
 
 BrickPyramid::Level::Level(const GridLevel& level, int floats, double voxel_size,
@@ -214,27 +231,32 @@ std::uint64_t BrickPyramid::Level::bytes() const noexcept {
            codes.size() * sizeof(std::uint16_t) + ranges.size() * sizeof(float);
 }
 
-/// Four floats at a time; with 3 floats the fourth lane reads on into the next voxel, and is
-/// dropped.
-/// @param from_origin  position relative to index (0, 0, 0), object space
-/// @tparam N           number of floats
-template <int N>
-bool BrickPyramid::Level::lookup(const glm::dvec3& from_origin, float* out) const noexcept {
+BrickPyramid::Tap BrickPyramid::Level::locate(const glm::dvec3& from_origin,
+                                              int floats) const noexcept {
     const glm::dvec3 index = from_origin * per_voxel;
     // Written so that NaN is outside; within, coordinates fit an int.
     const bool inside = (index.x >= begin.x) & (index.y >= begin.y) & (index.z >= begin.z) &
                         (index.x < end.x) & (index.y < end.y) & (index.z < end.z);
-    if (!inside) return false;
+    if (!inside) return {};
     const glm::ivec3 base(index);  // index >= 0, so this rounds down
     const std::uint32_t number = brick_of(base - low);
-    if (number == 0) return false;
+    if (number == 0) return {};
+    const std::size_t voxel = std::size_t(number - 1) * voxels + in_brick((base - low) & 7);
+    return {codes.data() + voxel * std::size_t(floats),
+            ranges.data() + std::size_t(number - 1) * 2 * std::size_t(floats),
+            glm::vec3(index - glm::dvec3(base))};
+}
 
-    const glm::vec3 f(index - glm::dvec3(base));
+namespace {
+
+/// Trilinear value of a tap, four floats at a time; with 3 floats the fourth lane reads on into the
+/// next voxel, and is dropped.
+/// @tparam N  number of floats
+template <int N>
+void interpolate(const std::uint16_t* voxel, const float* range, const glm::vec3& f,
+                 float* out) noexcept {
     const glm::vec3 e = 1.0f - f;
     const float xy[4] = {e.x * e.y, e.x * f.y, f.x * e.y, f.x * f.y};
-    const std::uint16_t* voxel =
-        codes.data() + (std::size_t(number - 1) * voxels + in_brick((base - low) & 7)) * N;
-    const float* range = ranges.data() + std::size_t(number - 1) * 2 * N;
     for (int c = 0; c < N; c += 4) {
         Floats4 sum = {};
         for (int corner = 0; corner < 4; ++corner) {
@@ -245,30 +267,31 @@ bool BrickPyramid::Level::lookup(const glm::dvec3& from_origin, float* out) cons
         const Floats4 value = load4(range + c) + load4(range + N + c) * sum;
         for (int k = c; k < std::min(c + 4, N); ++k) out[k] = value[k - c];
     }
-    return true;
 }
 
-bool BrickPyramid::Level::lookup(const glm::dvec3& from_origin, int floats,
-                                 float* out) const noexcept {
+void interpolate(const std::uint16_t* voxel, const float* range, const glm::vec3& f, int floats,
+                 float* out) noexcept {
     switch (floats) {
         case 1:
-            return lookup<1>(from_origin, out);
+            return interpolate<1>(voxel, range, f, out);
         case 2:
-            return lookup<2>(from_origin, out);
+            return interpolate<2>(voxel, range, f, out);
         case 3:
-            return lookup<3>(from_origin, out);
+            return interpolate<3>(voxel, range, f, out);
         case 4:
-            return lookup<4>(from_origin, out);
+            return interpolate<4>(voxel, range, f, out);
         case 5:
-            return lookup<5>(from_origin, out);
+            return interpolate<5>(voxel, range, f, out);
         case 6:
-            return lookup<6>(from_origin, out);
+            return interpolate<6>(voxel, range, f, out);
         case 7:
-            return lookup<7>(from_origin, out);
+            return interpolate<7>(voxel, range, f, out);
         default:
-            return lookup<8>(from_origin, out);
+            return interpolate<8>(voxel, range, f, out);
     }
 }
+
+}  // namespace
 
 BrickPyramid::~BrickPyramid() = default;
 BrickPyramid::BrickPyramid(BrickPyramid&&) noexcept = default;
@@ -297,25 +320,63 @@ std::uint64_t BrickPyramid::bytes() const noexcept {
     return sum;
 }
 
+/// The value of one tap or of two blended; the mean where there is no brick.
+bool BrickPyramid::blend(const Tap& fine, const Tap& coarse, float weight,
+                         float* out) const noexcept {
+    if (fine.voxel == nullptr) {
+        std::copy_n(m_mean.begin(), m_floats, out);
+        return false;
+    }
+    interpolate(fine.voxel, fine.range, fine.f, m_floats, out);
+    // Beside the surface the coarser level may have nothing: then the finer one alone.
+    if (coarse.voxel == nullptr) return true;
+    float value[max_floats];
+    interpolate(coarse.voxel, coarse.range, coarse.f, m_floats, value);
+    for (int c = 0; c < m_floats; ++c) out[c] += (value[c] - out[c]) * weight;
+    return true;
+}
+
 bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
-    const Level& l = m_levels[std::size_t(level)];
-    const glm::dvec3 p = glm::dvec3(P) - m_origin;
-    const bool found = l.lookup(p, m_floats, out);
-    if (!found) std::copy_n(m_mean.begin(), m_floats, out);
-    return found;
+    const Tap tap =
+        m_levels[std::size_t(level)].locate(glm::dvec3(P) - m_origin, m_floats);
+    return blend(tap, {}, 0.0f, out);
 }
 
 bool BrickPyramid::lookup(const glm::vec3& P, float footprint, float* out) const noexcept {
-    const float level = level_for(footprint);
-    const int fine = int(level);
-    const float blend = level - float(fine);
-    const bool found = lookup(P, fine, out);
-    if (!found || !(blend > 0.0f)) return found;
-    float coarse[max_floats];
-    // Beside the surface the coarser level may have nothing: then the finer one alone.
-    if (!lookup(P, fine + 1, coarse)) return true;
-    for (int c = 0; c < m_floats; ++c) out[c] += (coarse[c] - out[c]) * blend;
-    return true;
+    std::uint8_t found = 0;
+    lookup({&P, 1}, {&footprint, 1}, out, 1, &found);
+    return found != 0;
+}
+
+void BrickPyramid::lookup(std::span<const glm::vec3> P, std::span<const float> footprints,
+                          float* planes, std::size_t stride, std::uint8_t* found) const noexcept {
+    constexpr std::size_t in_flight = 32;  // points whose voxels are on their way at once
+    struct Pair {
+        Tap fine, coarse;
+        float weight;
+    };
+    std::array<Pair, in_flight> pairs;
+    float value[max_floats];
+    for (std::size_t first = 0; first < P.size(); first += in_flight) {
+        const std::size_t count = std::min(in_flight, P.size() - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::dvec3 p = glm::dvec3(P[first + i]) - m_origin;
+            const float level = level_for(footprints[first + i]);
+            const auto fine = std::size_t(level);
+            Pair& pair = pairs[i];
+            pair.weight = level - float(fine);
+            pair.fine = m_levels[fine].locate(p, m_floats);
+            pair.coarse = pair.weight > 0.0f ? m_levels[fine + 1].locate(p, m_floats) : Tap{};
+            pair.fine.prefetch(m_floats);
+            pair.coarse.prefetch(m_floats);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            found[first + i] = blend(pairs[i].fine, pairs[i].coarse, pairs[i].weight, value);
+            for (int c = 0; c < m_floats; ++c) {
+                planes[std::size_t(c) * stride + first + i] = value[c];
+            }
+        }
+    }
 }
 
 float BrickPyramid::level_for(float footprint) const noexcept {

@@ -134,7 +134,8 @@ GridBase::Ptr build_channel(const TextureGrid& from, int level, std::size_t chan
 
 /// Half the thickness of the shell that stands for an open surface, voxels. At a surface point the
 /// interpolated |distance| is up to about 1/2 (a plane midway between two layers of voxels): at
-/// 0.55 vdb_render shows holes, at 0.75 none, and from 1 on more of its hits lie beyond the band.
+/// 0.55 vdb_render shows holes, at 0.75 next to none; the thicker, the more of its hits lie beyond
+/// the band.
 constexpr double shell = 0.75;
 
 /// The level set. An open surface has no inside, and signs that end at the band's edge look like a

@@ -206,14 +206,18 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
     const float scale = frame.instances[group.instance].largest_scale;
     const float width_at_1 =
         frame.camera.pixel_angle() / std::sqrt(float(frame.pattern.size())) / scale;
-    std::array<float, BrickPyramid::max_floats> values;
+    const auto size = std::size_t(group.last - group.first);
+    m_P.resize(size);
+    m_footprints.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        const Sample& s = m_samples[std::size_t(group.first) + i];
+        m_P[i] = s.point.P;
+        m_footprints[i] = s.distance * width_at_1;
+    }
+    shading.pyramid->lookup(m_P, m_footprints, m_planes.data(), capacity, m_found.data());
     m_missed.clear();
-    for (int i = 0; i < group.last - group.first; ++i) {
-        const Sample& s = m_samples[std::size_t(group.first + i)];
-        if (!shading.pyramid->lookup(s.point.P, s.distance * width_at_1, values.data())) {
-            m_missed.push_back(i);
-        }
-        for (int k = 0; k < floats; ++k) m_planes[std::size_t(k * capacity + i)] = values[k];
+    for (std::size_t i = 0; i < size; ++i) {
+        if (!m_found[i]) m_missed.push_back(int(i));
     }
     statistics.lookups += std::uint64_t(group.last - group.first);
     statistics.misses += m_missed.size();

@@ -90,13 +90,15 @@ private:
     std::vector<Sample> m_samples;       ///< ordered by group
     std::vector<std::uint32_t> m_order;  ///< hit of each sample
     std::vector<Candidate> m_candidates;
-    std::array<std::uint8_t, capacity> m_blocked;
+    std::array<std::uint8_t, capacity> m_blocked, m_found;
     std::vector<Light> m_lights;  ///< one row of as many as the scene has lights for each sample
     std::array<int, capacity> m_light_count;
     std::array<glm::vec3, capacity> m_E;
     SurfaceBatch m_batch;
     std::vector<float> m_planes, m_missed_planes;
     std::vector<int> m_missed;
+    std::vector<glm::vec3> m_P;
+    std::vector<float> m_footprints;
     std::vector<Seen> m_seen;
     std::array<glm::vec3, capacity> m_Ci;
 };

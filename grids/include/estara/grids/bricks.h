@@ -4,7 +4,9 @@
 #include <glm/glm.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "estara/grids/texture_grid.h"
@@ -43,6 +45,14 @@ public:
     ///                   mean the finest level, NaN too
     bool lookup(const glm::vec3& P, float footprint, float* out) const noexcept;
 
+    /// lookup(P[i], footprints[i]) for each point, with the same bits. Faster than one by one where
+    /// the bricks are not in the cache: the voxels of many points are asked of memory at once, and
+    /// computed with when they arrive.
+    /// @param planes  float c of point i becomes planes[c * stride + i]
+    /// @param found   1 or 0, what lookup() returns for the point
+    void lookup(std::span<const glm::vec3> P, std::span<const float> footprints, float* planes,
+                std::size_t stride, std::uint8_t* found) const noexcept;
+
     /// The (fractional) level for a footprint, in [0, levels() - 1]: log2(footprint / voxel) plus
     /// level_bias.
     float level_for(float footprint) const noexcept;
@@ -53,6 +63,9 @@ public:
 
 private:
     struct Level;
+    struct Tap;
+    bool blend(const Tap& fine, const Tap& coarse, float weight, float* out) const noexcept;
+
     std::vector<Level> m_levels;
     int m_floats = 0;
     double m_voxel_size = 1.0;
