@@ -20,6 +20,7 @@ struct Words {
     std::string frames, resolution, max_memory;
     std::string compression = "zip", progress = "auto";
     double voxel_size = 0.0, max_error = 0.0;
+    std::int64_t seed = 0;  // signed: "-1" would become a large number
 };
 
 Compression parse_compression(const std::string& word) {
@@ -63,9 +64,14 @@ void interpret(const CLI::App& app, const Words& words, Options& options) {
     if (app.count("--max-error") > 0) options.max_error = words.max_error;
     if (!words.frames.empty()) options.frames = parse_frames(words.frames);
     options.resolution = parse_resolution(words.resolution);
-    options.max_memory = words.max_memory.empty() ? physical_memory() / 2 : parse_size(words.max_memory);
+    options.max_memory = physical_memory() / 2;
+    if (!words.max_memory.empty()) {
+        options.max_memory = naming("--max-memory", [&] { return parse_size(words.max_memory); });
+    }
     options.file.compression = parse_compression(words.compression);
     options.progress = parse_progress(words.progress);
+    if (words.seed < 0) throw Error(fmt::format("--seed {}: must be 0 or above", words.seed));
+    options.seed = std::uint64_t(words.seed);
     check(options);
 }
 
@@ -139,7 +145,7 @@ void add_work(CLI::App& app, Options& options, Words& words) {
         ->type_name("STYLE")
         ->capture_default_str()
         ->group("Work");
-    app.add_option("--seed", options.seed, "of the points where the error is measured")
+    app.add_option("--seed", words.seed, "of the points where the error is measured")
         ->type_name("N")
         ->capture_default_str()
         ->group("Work");

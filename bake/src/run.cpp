@@ -85,15 +85,34 @@ std::vector<Job> plan(const Scene& scene, const Options& options) {
     return jobs;
 }
 
-/// Refuses a bake that would not fit, with a voxel size that would.
-void check_memory(const Job& job, std::uint64_t max_memory) {
-    const BakeEstimate estimate = estimate_bake(job.object->mesh, job.shader->info(), job.voxel_size);
-    if (estimate.bytes <= max_memory) return;
-    const double fits = job.voxel_size * std::sqrt(double(estimate.bytes) / double(max_memory)) * 1.05;
-    throw Error(fmt::format("object \"{}\": {} voxels of {:.4g} need about {}, --max-memory is {}; a voxel of "
-                            "{:.4g} fits: --voxel-size {:.4g}",
-                            job.object->name, estimate.voxels, job.voxel_size, format_bytes(estimate.bytes),
-                            format_bytes(max_memory), fits, fits),
+/// Puts the object before what is wrong with it.
+template <class F>
+auto naming(const Job& job, F work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        throw Error(fmt::format("object \"{}\": {}", job.object->name, error.what()), error.status());
+    }
+}
+
+/// Refuses bakes that would not fit together (they go into one file), with voxel sizes that would.
+void check_memory(const std::vector<Job>& jobs, std::uint64_t max_memory) {
+    std::uint64_t bytes = 0, voxels = 0;
+    for (const Job& job : jobs) {
+        if (job.voxel_size == 0.0) continue;
+        const BakeEstimate estimate =
+            naming(job, [&] { return estimate_bake(job.object->mesh, job.shader->info(), job.voxel_size); });
+        bytes += estimate.bytes;
+        voxels += estimate.voxels;
+    }
+    if (bytes <= max_memory) return;
+    const double larger = std::sqrt(double(bytes) / double(max_memory)) * 1.05;
+    const std::string what = jobs.size() == 1 ? fmt::format("object \"{}\"", jobs.front().object->name)
+                                              : fmt::format("{} objects", jobs.size());
+    throw Error(fmt::format("{}: {} voxels need about {}, --max-memory is {}; voxels {:.3g} times as large fit: "
+                            "--voxel-size {:.4g}",
+                            what, voxels, format_bytes(bytes), format_bytes(max_memory), larger,
+                            larger * jobs.front().voxel_size),
                 ExitStatus::failed);
 }
 
@@ -113,6 +132,7 @@ Done bake_job(const Job& job, const Options& options) {
         Progress progress(options.progress, "bake " + job.object->name, estimate.voxels);
         done.grid = bake_mesh(mesh, *job.shader, job.voxel_size, options.file.half,
                               [&](std::uint64_t n) { progress.advance(n); });
+        progress.advance(estimate.voxels);  // the estimate may have been too high
         done.grid.errors = measure_error(mesh, *job.shader, BrickPyramid(done.grid), job.voxel_size,
                                          error_samples, options.seed);
     }
@@ -186,12 +206,10 @@ void bake_all_jobs(const std::vector<Job>& jobs, const Options& options, const O
     const Stopwatch watch;
     if (!options.stats.empty()) const PendingFile writable(options.stats);
     const PendingFile writable(options.output);  // fails now rather than after the work
-    for (const Job& job : jobs) {
-        if (job.voxel_size > 0.0) check_memory(job, options.max_memory);
-    }
+    check_memory(jobs, options.max_memory);
     std::vector<Done> bakes;
     for (const Job& job : jobs) {
-        bakes.push_back(bake_job(job, options));
+        bakes.push_back(naming(job, [&] { return bake_job(job, options); }));
         output.result(describe_bake(bakes.back()));
     }
     std::vector<TextureGrid> grids;
@@ -230,7 +248,7 @@ void run(const Options& options, const Output& output) {
     for (const std::string& warning : scene.warnings) output.message("warning: " + warning);
     const std::vector<Job> jobs = plan(scene, options);
     if (!options.dry_run) return bake_all_jobs(jobs, options, output);
-    for (const Job& job : jobs) output.result(dry_run(job));
+    for (const Job& job : jobs) output.result(naming(job, [&] { return dry_run(job); }));
 }
 
 }  // namespace estara::bake

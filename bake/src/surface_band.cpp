@@ -45,9 +45,9 @@ Lattice make_lattice(const Mesh& mesh, double voxel_size) {
     const glm::dvec3 extent = glm::dvec3(box.max) - glm::dvec3(box.min);
     const double widest = std::max({extent.x, extent.y, extent.z}) / voxel_size;
     if (widest > 131072.0) {
-        throw Error(fmt::format("voxel size {:.6g} divides the object into {:.0f} voxels a side; at most "
-                                "131072 are possible",
-                                voxel_size, widest));
+        throw Error(fmt::format("voxel size {:.6g} divides the object into {:.6g} voxels a side; at most "
+                                "131072 are possible, of {:.6g}",
+                                voxel_size, widest, voxel_size * widest / 131072.0));
     }
     // A hit point is interpolated in float: three products and two sums, each off by half an ulp of
     // the largest coordinate; four ulps bound it (with what the lookup itself rounds).
@@ -238,6 +238,8 @@ FinishedBlock build_block(const Mesh& mesh, const Lattice& lattice, const Entry*
 }
 
 }  // namespace
+
+void check_voxel_size(const Mesh& mesh, double voxel_size) { make_lattice(mesh, voxel_size); }
 
 SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
     const Lattice lattice = make_lattice(mesh, voxel_size);

@@ -66,6 +66,7 @@ ObjectRecord record_of(const Object& object, const ObjectShading& shading) {
 
 void put_on(Scene& scene, const std::string& shader, const std::vector<Setting>& params) {
     if (shader.empty()) return;
+    bind_choice({shader, params, "--shader"}, true);  // an error even if every object wears one
     for (Object& object : scene.objects) {
         if (object.wears_shader()) continue;
         object.choice = {shader, params, "--shader"};
@@ -89,7 +90,13 @@ std::vector<float> direct_filter_widths(const Scene& scene, RayScene& rays, int 
 }
 
 Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera, const Say& say) {
+    const bool is_used = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                     [](const Object& o) { return !o.wears_shader(); });
     put_on(scene, options.shader, options.params);
+    if (!options.shader.empty() && !is_used) {
+        say(fmt::format("warning: --shader {}: not used, every object of {} wears a shader",
+                        options.shader, scene.path));
+    }
     std::vector<LoadedGrid> grids = load_grids(options.grids);
     const GridMatch match = match_grids(scene, grids);
     for (const std::string& warning : match.warnings) say("warning: " + warning);

@@ -1,13 +1,12 @@
 #include "estara/render/options.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "estara/scenes/error.h"
+#include "estara/scenes/command_line.h"
 
 namespace estara {
 namespace {
@@ -40,7 +39,7 @@ void check_ranges(const Options& options) {
         throw Error(fmt::format("--spp {}: must be from 1 to 65536", options.frame.spp));
     }
     if (!(options.fps > 0.0) || !std::isfinite(options.fps)) {
-        throw Error(fmt::format("--fps {}: must be more than 0", options.fps));
+        throw Error(fmt::format("--fps {}: must be above 0", options.fps));
     }
     if (!(std::abs(options.frame.exposure) <= 100.0f)) {
         throw Error(fmt::format("--exposure {}: must be from -100 to 100", options.frame.exposure));
@@ -78,7 +77,9 @@ void interpret(const Words& words, Options& options) {
     const glm::ivec2 resolution = parse_resolution(words.resolution);
     options.frame.width = resolution.x;
     options.frame.height = resolution.y;
-    if (!words.ambient.empty()) options.ambient = parse_color(words.ambient);
+    if (!words.ambient.empty()) {
+        options.ambient = naming("--ambient", [&] { return parse_color(words.ambient); });
+    }
     if (!words.compare.empty() && words.compare != "direct") {
         throw Error(fmt::format("--compare: no '{}'; there is: direct", words.compare));
     }
@@ -181,11 +182,6 @@ void add_work(CLI::App& app, Options& options, Words& words) {
         ->group("Work");
 }
 
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-}
-
 }  // namespace
 
 const char* to_string(Strategy strategy) noexcept {
@@ -203,18 +199,8 @@ Options parse_options(int argc, const char* const* argv, std::string& help) {
     add_output(app, options, words);
     add_picture(app, options, words);
     add_work(app, options, words);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        help = app.help();
-        return options;
-    } catch (const CLI::CallForVersion&) {
-        help = app.version() + "\n";
-        return options;
-    } catch (const CLI::ParseError& error) {
-        throw Error(one_line(error.what()) + "; --help lists the options");
-    }
-    interpret(words, options);
+    help = parse_command_line(app, argc, argv);
+    if (help.empty()) interpret(words, options);
     return options;
 }
 

@@ -1,9 +1,9 @@
 // estara-scenes: writes the example scenes.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 
 #include "all.h"
+#include "estara/scenes/command_line.h"
 #include "estara/scenes/program.h"
 
 namespace {
@@ -45,19 +45,17 @@ void write(const std::vector<Example>& examples, const Options& options) {
 
 void run(int argc, char** argv) {
     Options options;
-    CLI::App app{"Writes an example scene as glTF, ready for estara-bake and estara-render."};
+    CLI::App app{"Writes an example scene as glTF, ready for estara-bake and estara-render.",
+                 "estara-scenes"};
     app.add_option("SCENE", options.scene, "which scene; --list names them");
     app.add_option("-o,--output", options.output, "file to write")->type_name("FILE.glb");
     app.add_flag("--list", options.list, "name the scenes there are");
-    app.set_version_flag("--version", estara::version);
+    app.set_version_flag("--version", std::string("estara-scenes ") + estara::version);
     app.footer("Example:\n  estara-scenes still-life -o still-life.glb");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& asked_for_help) {
-        app.exit(asked_for_help);
+    const std::string help = estara::parse_command_line(app, argc, argv);
+    if (!help.empty()) {
+        std::fputs(help.c_str(), stdout);
         return;
-    } catch (const CLI::ParseError& e) {
-        throw Error(std::string(e.what()) + "; estara-scenes --help lists the options");
     }
     const std::vector<Example> examples = estara::examples::all();
     if (options.list) return list(examples);

@@ -49,9 +49,17 @@ public:
 
     bool parse_error(std::size_t position, const std::string& last,
                      const nlohmann::detail::exception&) override {
+        const std::size_t start = m_text.find_first_not_of(" \t\r\n");
         const std::string_view before = m_text.substr(0, position);
-        m_problem = fmt::format("broken JSON in line {}, near '{}'",
-                                1 + std::count(before.begin(), before.end(), '\n'), one_line(last));
+        if (start == m_text.npos) {
+            m_problem = "the file is empty";
+        } else if (m_text[start] != '{') {
+            m_problem = "not glTF: it starts neither with { nor as a .glb does";
+        } else {
+            m_problem =
+                fmt::format("broken JSON in line {}, near '{}'",
+                            1 + std::count(before.begin(), before.end(), '\n'), one_line(last));
+        }
         return false;
     }
 

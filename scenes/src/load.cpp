@@ -86,7 +86,15 @@ void bind_shaders(Scene& scene) {
     if (!problems.empty()) throw Error(problems);
 }
 
+void refuse_folder(const std::string& path) {
+    std::error_code unreadable;  // which reading it will tell
+    if (std::filesystem::is_directory(path, unreadable)) {
+        throw Error(fmt::format("{}: is a folder; a scene is a file", path));
+    }
+}
+
 Scene read(const std::string& path) {
+    refuse_folder(path);
     const std::string format = ending(path);
     if (format == "gltf" || format == "glb") return read_gltf(path);
     if (format == "obj") return scene_of(read_obj(path), path);
@@ -99,9 +107,7 @@ Scene read(const std::string& path) {
 
 std::string read_file(const std::string& path) {
     std::error_code code;
-    if (std::filesystem::is_directory(path, code)) {
-        throw Error(fmt::format("{}: is a folder; a scene is a file", path));
-    }
+    refuse_folder(path);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw Error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
     const std::uintmax_t size = std::filesystem::file_size(path, code);

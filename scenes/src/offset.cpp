@@ -1,4 +1,5 @@
 // Where a ray that leaves a surface starts.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,7 +32,12 @@ glm::vec3 error_bound(const glm::vec3& P, const glm::mat4& world_from_object,
     const glm::vec3 to_world = gamma(3) * (reach + shift);
     // The tracer takes the ray's origin back with the inverse it has computed itself.
     const glm::vec3 to_object = back * (gamma(4) * glm::abs(P) + gamma(6) * shift);
-    return on_triangle + to_world + there * to_object;
+    // Along an axis in which the object has no extent (a floor in y = 0) nothing of this is left;
+    // the triangle test takes its products from the other axes all the same, and its distance of
+    // next to 0 is a hit.
+    const glm::vec3 size = reach + shift;
+    const glm::vec3 least(gamma(8) * std::max({size.x, size.y, size.z}));
+    return glm::max(on_triangle + to_world + there * to_object, least);
 }
 
 /// The next float in the direction of `way`, x itself where that is 0.

@@ -126,7 +126,7 @@ Setting parse_setting(const std::string& text) {
         const std::vector<float> values = numbers(std::string_view(text).substr(equals + 1));
         if (values.size() == 1 || values.size() == 3) return {text.substr(0, equals), values};
     }
-    throw Error(fmt::format("--param '{}': must be NAME=VALUE or NAME=R,G,B", one_line(text)));
+    throw Error(fmt::format("--param '{}': must be NAME=NUMBER or NAME=R,G,B", one_line(text)));
 }
 
 std::string format_bytes(std::uint64_t bytes) {

@@ -236,8 +236,8 @@ TEST(WriteVdb, NamesAFolderThatCannotBeWrittenTo) {
         FAIL() << "it was written";
     } catch (const Error& e) {
         EXPECT_EQ(e.status(), ExitStatus::bad_input);
-        EXPECT_EQ(std::string(e.what()), path + ": cannot write to the folder " +
-                                             folder.file("plain") + ": Not a directory");
+        EXPECT_EQ(std::string(e.what()),
+                  path + ": cannot make the folder " + folder.file("plain") + ": Not a directory");
     }
     EXPECT_EQ(folder.entries(), std::vector<std::string>{"plain"});
 }

@@ -27,7 +27,9 @@ protected:
 };
 
 TEST_F(GltfError, OfJson) {
-    EXPECT_EQ(loading(""), "a.gltf: broken JSON in line 1, near ''");
+    EXPECT_EQ(loading(""), "a.gltf: the file is empty");
+    EXPECT_EQ(loading("solid vase"),
+              "a.gltf: not glTF: it starts neither with { nor as a .glb does");
     EXPECT_EQ(loading("{\n\"a\": [1,\n2,,]}"), "a.gltf: broken JSON in line 3, near '2,,'");
     EXPECT_EQ(loading("{\"a\": 1, \"b\": 2, \"a\": 3}"), "a.gltf: the key \"a\" is given twice");
     EXPECT_EQ(loading(std::string(100000, '[')), "a.gltf: JSON nested more than 200 deep");

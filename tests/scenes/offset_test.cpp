@@ -18,11 +18,24 @@ struct Leaving {
     glm::mat4 world_from_object;
 };
 
+/// A round floor whose vertices have y = 0 exactly.
+Mesh floor_at_zero() {
+    Mesh mesh;
+    mesh.P.push_back({0.0f, 0.0f, 0.0f});
+    constexpr int corners = 90;
+    for (int i = 0; i < corners; ++i) {
+        const float angle = 2.0f * 3.14159265f * float(i) / float(corners);
+        mesh.P.push_back({std::cos(angle), 0.0f, -std::sin(angle)});
+        mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % corners});
+    }
+    return mesh;
+}
+
 std::vector<Leaving> surfaces() {
     const glm::quat straight(1, 0, 0, 0);
     const glm::vec3 one(1.0f), far(1e4f, -1e4f, 1e4f), stretched(3.0f, 0.5f, 1.5f);
     const Mesh sphere = ball(60), thin = box({1.0f, 0.7f, 1e-3f});
-    std::vector<Leaving> all;
+    std::vector<Leaving> all{{"floor in y = 0", floor_at_zero(), glm::mat4(1.0f)}};
     for (const auto& [name, mesh] : {std::pair{"sphere", sphere}, std::pair{"thin box", thin}}) {
         all.push_back({name, mesh, transform({}, straight, one)});
         all.push_back({name, mesh, transform({}, slanted(), stretched)});

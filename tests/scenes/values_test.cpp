@@ -70,7 +70,7 @@ TEST(ParseSetting, ReadsANumberOrAColour) {
     EXPECT_EQ(parse_setting("Cs=0.5,1,0").value, (std::vector<float>{0.5f, 1, 0}));
     for (const std::string bad : {"", "a", "=1", "a=", "a=b", "a=1,2", "a=1,2,3,4", "a=nan"}) {
         EXPECT_EQ(message_of([&] { parse_setting(bad); }),
-                  "--param '" + bad + "': must be NAME=VALUE or NAME=R,G,B");
+                  "--param '" + bad + "': must be NAME=NUMBER or NAME=R,G,B");
     }
 }
 

@@ -48,8 +48,8 @@ std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& sha
 /// How many surface points an error is measured at: p99.9 then rests on 262 of them.
 inline constexpr std::uint64_t error_samples = std::uint64_t{1} << 18;
 
-/// Bakes with the largest voxel that keeps every channel's RMSE within a bound (found to within a tenth,
-/// by the error's measured growth with the voxel size).
+/// Bakes with the largest voxel that keeps every channel's RMSE within a bound: a voxel a tenth larger
+/// was tried and broke it, or the voxel is a sixteenth of the object's diagonal.
 struct BoundedBake {
     TextureGrid grid;   ///< errors filled in
     int attempts = 0;

@@ -19,13 +19,18 @@ struct SurfaceBand {
     std::vector<BlockMask> cells;      ///< by block
     std::vector<std::uint32_t> triangle;  ///< nearest one of those that cross the eight cells around
     std::vector<glm::vec2> barycentrics;  ///< b1, b2 of its nearest point
-    std::vector<float> distance;       ///< to that point, object space; negative behind the surface
+    /// To that point, object space; negative behind the surface. The distance to the mesh itself where
+    /// that is up to a voxel; beyond, it may be larger: what does not cross a cell around is not seen.
+    std::vector<float> distance;
 
     std::uint64_t voxels() const noexcept { return triangle.size(); }
     glm::vec3 position(const glm::ivec3& voxel) const noexcept {
         return glm::vec3(origin + voxel_size * glm::dvec3(voxel));
     }
 };
+
+/// Error if surface_band() cannot divide the mesh into such voxels; costs next to nothing.
+void check_voxel_size(const Mesh& mesh, double voxel_size);
 
 /// Voxelises a mesh conservatively: active are the eight corners of every cell (unit cube between
 /// voxel centres) that a triangle touches, and no other voxel. Cells are taken larger by what a
