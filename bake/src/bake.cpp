@@ -15,9 +15,10 @@ namespace estara {
 
 namespace {
 
-/// Peak memory of a bake in bytes per active voxel of level 0: the band while it is built, and for each
-/// float of the record all levels, the lookup structure and the file's trees. Measured 138 bytes with
-/// three floats and 171 with four, at 4 and at 17 million voxels (estara-bake --stats, peak_memory).
+/// Peak memory of a bake in bytes per active voxel of level 0: the band while it is built, and for
+/// each float of the record all levels, the lookup structure and the file's trees. Measured 138
+/// bytes with three floats and 171 with four, at 4 and at 17 million voxels (estara-bake --stats,
+/// peak_memory).
 constexpr double bytes_per_voxel = 45.0, bytes_per_float = 34.0;
 
 /// The points of a block that are baked, in row order.
@@ -31,7 +32,8 @@ void fill_batch(SurfaceBatch& batch, const Mesh& mesh, Domain domain, const Surf
         const glm::vec2 b = band.barycentrics[row];
         const MeshPoint m = mesh_point(mesh, band.triangle[row], b.x, b.y);
         const glm::ivec3 voxel = block.origin + glm::ivec3(bit >> 6, (bit >> 3) & 7, bit & 7);
-        batch.set(batch.size++, domain == Domain::point ? band.position(voxel) : m.P, m.N, m.uv, m.dPdu);
+        batch.set(batch.size++, domain == Domain::point ? band.position(voxel) : m.P, m.N, m.uv,
+                  tangent(mesh, m));
     }
 }
 
@@ -50,14 +52,17 @@ void shade(TextureGrid& grid, const Mesh& mesh, const BoundShader& shader, const
         shader.bake(batch, planes.data());
         for (int k = 0; k < floats; ++k) {
             const float* const plane = planes.data() + k * SurfaceBatch::capacity;
-            if (!std::all_of(plane, plane + batch.size, [](float v) { return std::isfinite(v); })) finite = false;
-            std::copy(plane, plane + batch.size, level.planes[std::size_t(k)].begin() + std::ptrdiff_t(block.first));
+            if (!std::all_of(plane, plane + batch.size, [](float v) { return std::isfinite(v); }))
+                finite = false;
+            std::copy(plane, plane + batch.size,
+                      level.planes[std::size_t(k)].begin() + std::ptrdiff_t(block.first));
         }
         if (done) done(std::uint64_t(batch.size));
     });
     if (!finite) {
-        throw Error(fmt::format("shader '{}' gives values that are not finite on this surface with {}",
-                                shader.info().name, describe_values(shader)));
+        throw Error(
+            fmt::format("shader '{}' gives values that are not finite on this surface with {}",
+                        shader.info().name, describe_values(shader)));
     }
 }
 

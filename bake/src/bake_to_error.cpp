@@ -17,11 +17,12 @@ struct Trial {
     double size, error;
 };
 
-/// How error grows with the voxel size, as a power, between two trials: 2 where the shader is smooth
-/// and resolved, 1/2 at its discontinuities. Without a second trial the cautious end.
+/// How error grows with the voxel size, as a power, between two trials: 2 where the shader is
+/// smooth and resolved, 1/2 at its discontinuities. Without a second trial the cautious end.
 double growth(const std::optional<Trial>& coarse, const std::optional<Trial>& fine) {
     if (!coarse || !fine || !(coarse->error > fine->error) || !(fine->error > 0.0)) return 1.0;
-    return std::clamp(std::log(coarse->error / fine->error) / std::log(coarse->size / fine->size), 0.25, 2.5);
+    return std::clamp(std::log(coarse->error / fine->error) / std::log(coarse->size / fine->size),
+                      0.25, 2.5);
 }
 
 /// The next size to try, between the smallest one that failed and the largest one that did not.
@@ -29,12 +30,14 @@ double next_size(const std::optional<Trial>& failed, const std::optional<Trial>&
                  const std::optional<Trial>& met, double bound) {
     if (!met) {
         const double slope = growth(previous, failed);
-        return failed->size * std::clamp(0.97 * std::pow(bound / failed->error, 1.0 / slope), 0.25, 0.9);
+        return failed->size *
+               std::clamp(0.97 * std::pow(bound / failed->error, 1.0 / slope), 0.25, 0.9);
     }
     if (!failed) return met->size * 2.0;
     const double slope = growth(failed, met);
     const double wanted = failed->size * 0.99 * std::pow(bound / failed->error, 1.0 / slope);
-    const double span = failed->size / met->size;  // both ends shrink towards each other in any case
+    const double span =
+        failed->size / met->size;  // both ends shrink towards each other in any case
     return std::clamp(wanted, met->size * std::pow(span, 0.2), met->size * std::pow(span, 0.8));
 }
 
@@ -44,42 +47,69 @@ double worst_rmse(const TextureGrid& grid) {
     return worst;
 }
 
-[[noreturn]] void out_of_reach(double bound, double size, std::uint64_t bytes, std::uint64_t max_bytes,
+[[noreturn]] void out_of_reach(double bound, std::uint64_t max_bytes,
                                const std::optional<Trial>& best) {
-    std::string text = fmt::format("RMSE {:.3g} is out of reach: it needs a voxel of about {:.3g}, so {} of memory "
-                                   "and --max-memory is {}",
-                                   bound, size, format_bytes(bytes), format_bytes(max_bytes));
-    if (best) text += fmt::format("; a voxel of {:.3g} reached {:.3g}", best->size, best->error);
-    throw Error(text, ExitStatus::failed);
+    const std::string reached =
+        best ? fmt::format("the smallest voxel that fits, {:.3g}, reached {:.3g}", best->size,
+                           best->error)
+             : "no voxel fits";
+    throw Error(fmt::format("RMSE {:.3g} is out of reach within --max-memory {}: {}", bound,
+                            format_bytes(max_bytes), reached),
+                ExitStatus::failed);
+}
+
+/// The wanted size, or the smallest one that floats and memory allow if that is larger.
+double feasible(const Mesh& mesh, const ShaderInfo& shader, double wanted,
+                std::uint64_t max_bytes) {
+    double size = std::max(wanted, finest_voxel_size(mesh));
+    // The estimate goes with 1 / size^2, but not exactly: a few steps settle it.
+    for (int step = 0; step < 8; ++step) {
+        const double bytes = double(estimate_bake(mesh, shader, size).bytes);
+        if (bytes <= double(max_bytes)) break;
+        size *= 1.02 * std::sqrt(bytes / double(max_bytes));
+    }
+    return size;
 }
 
 }  // namespace
 
 BoundedBake bake_to_error(const Mesh& mesh, const BoundShader& shader, double max_error, bool half,
-                          std::uint64_t max_bytes, std::uint64_t seed, const VoxelsDone& done) {
+                          std::uint64_t max_bytes, std::uint64_t seed, const AttemptBegins& begin) {
     if (!(max_error > 0.0)) throw Error(fmt::format("--max-error {}: must be above 0", max_error));
     const double diagonal = bounds(mesh).diagonal();
-    const double coarsest = diagonal / 16.0;
+    const double coarsest = std::max(diagonal / 16.0, finest_voxel_size(mesh));
     constexpr double close_enough = 1.1;
     BoundedBake result;
     std::optional<Trial> failed, previous, met;
-    double size = diagonal / 128.0;
+    std::uint64_t held = 0;  // by the best bake so far
+    double wanted = diagonal / 128.0;
     for (;;) {
-        const std::uint64_t bytes = estimate_bake(mesh, shader.info(), size).bytes;
-        if (bytes > max_bytes) out_of_reach(max_error, size, bytes, max_bytes, failed);
-        TextureGrid grid = bake_mesh(mesh, shader, size, half, done);
+        const std::uint64_t left = max_bytes > held ? max_bytes - held : 0;
+        const double size = feasible(mesh, shader.info(), wanted, left);
+        if (met && size >= (failed ? failed->size : 1.01 * coarsest)) return result;  // no memory
+        if (!met && size > coarsest) out_of_reach(max_error, max_bytes, failed);
+        if (failed && !met && size >= 0.98 * failed->size) {
+            out_of_reach(max_error, max_bytes, failed);
+        }
+        const BakeEstimate estimate = estimate_bake(mesh, shader.info(), size);
+        TextureGrid grid = bake_mesh(mesh, shader, size, half,
+                                     begin ? begin(size, estimate.voxels) : VoxelsDone{});
         grid.errors = measure_error(mesh, shader, BrickPyramid(grid), size, error_samples, seed);
         ++result.attempts;
         const Trial trial{size, worst_rmse(grid)};
         if (trial.error <= max_error) {
             met = trial;
             result.grid = std::move(grid);
+            held = estimate.bytes;
         } else {
             previous = failed;
             failed = trial;
         }
-        if (met && (met->size >= coarsest || (failed && failed->size <= close_enough * met->size))) return result;
-        size = std::min(next_size(failed, previous, met, max_error), coarsest);
+        if (met &&
+            (met->size >= coarsest || (failed && failed->size <= close_enough * met->size))) {
+            return result;
+        }
+        wanted = std::min(next_size(failed, previous, met, max_error), coarsest);
     }
 }
 

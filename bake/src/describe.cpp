@@ -6,7 +6,8 @@ namespace estara::bake {
 namespace {
 
 std::string default_text(const ParamInfo& param) {
-    return param.type == ValueType::color ? to_string(param.default_value) : to_string(param.default_value.x);
+    return param.type == ValueType::color ? to_string(param.default_value)
+                                          : to_string(param.default_value.x);
 }
 
 std::string range_text(const ParamInfo& param) {
@@ -18,8 +19,8 @@ std::string range_text(const ParamInfo& param) {
 std::string describe(const ShaderInfo& shader) {
     std::string text = fmt::format("{}: {}\n", shader.name, shader.summary);
     for (const ParamInfo& p : shader.params) {
-        text += fmt::format("    {:<14} {:<18} {:<15} {:<18} {}\n", p.name, default_text(p), to_string(p.unit),
-                            range_text(p), p.help);
+        text += fmt::format("    {:<14} {:<18} {:<15} {:<18} {}\n", p.name, default_text(p),
+                            to_string(p.unit), range_text(p), p.help);
     }
     for (const ChannelInfo& c : shader.channels) {
         text += fmt::format("    -> {:<11} {:<18} {:<15} {:<18} {}\n", c.name,
@@ -29,7 +30,8 @@ std::string describe(const ShaderInfo& shader) {
 }
 
 std::string shader_table() {
-    std::string text = "| shader | what it paints | parameters | baked channels |\n|---|---|---|---|\n";
+    std::string text =
+        "| shader | what it paints | parameters | baked channels |\n|---|---|---|---|\n";
     for (const ShaderInfo& shader : all_shaders()) {
         std::string params, channels;
         for (const ParamInfo& p : shader.params) {
@@ -38,7 +40,8 @@ std::string shader_table() {
         for (const ChannelInfo& c : shader.channels) {
             channels += fmt::format("{}{}", channels.empty() ? "" : ", ", c.name);
         }
-        text += fmt::format("| `{}` | {} | {} | {} |\n", shader.name, shader.summary, params, channels);
+        text +=
+            fmt::format("| `{}` | {} | {} | {} |\n", shader.name, shader.summary, params, channels);
     }
     return text;
 }

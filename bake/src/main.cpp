@@ -12,7 +12,9 @@ int main(int argc, char** argv) {
             return;
         }
         const auto result = [](const std::string& text) { std::puts(text.c_str()); };
-        const auto message = [](const std::string& text) { std::fprintf(stderr, "estara-bake: %s\n", text.c_str()); };
+        const auto message = [](const std::string& text) {
+            std::fprintf(stderr, "estara-bake: %s\n", text.c_str());
+        };
         estara::bake::run(options, {result, message});
     });
 }

@@ -21,7 +21,8 @@ public:
         for (std::size_t t = 0; t < m_area.size(); ++t) {
             const glm::uvec3& c = mesh.triangles[t];
             const glm::dvec3 a(mesh.P[c.x]);
-            sum += 0.5 * glm::length(glm::cross(glm::dvec3(mesh.P[c.y]) - a, glm::dvec3(mesh.P[c.z]) - a));
+            sum += 0.5 * glm::length(
+                             glm::cross(glm::dvec3(mesh.P[c.y]) - a, glm::dvec3(mesh.P[c.z]) - a));
             m_area[t] = sum;
         }
     }
@@ -29,9 +30,11 @@ public:
     /// @param u  three numbers in [0, 1)
     MeshPoint at(const glm::dvec3& u) const {
         const auto found = std::upper_bound(m_area.begin(), m_area.end(), u.x * m_area.back());
-        const auto triangle = std::min<std::size_t>(std::size_t(found - m_area.begin()), m_area.size() - 1);
+        const auto triangle =
+            std::min<std::size_t>(std::size_t(found - m_area.begin()), m_area.size() - 1);
         const double root = std::sqrt(u.y);  // Turk 1990, "Generating Random Points in Triangles"
-        return mesh_point(m_mesh, std::uint32_t(triangle), float(root * (1.0 - u.z)), float(root * u.z));
+        return mesh_point(m_mesh, std::uint32_t(triangle), float(root * (1.0 - u.z)),
+                          float(root * u.z));
     }
 
 private:
@@ -72,37 +75,39 @@ std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& sha
     std::vector<std::vector<float>> errors(floats, std::vector<float>(samples));
     constexpr std::uint64_t batch_size = SurfaceBatch::capacity;
 
-    tbb::parallel_for(std::uint64_t{0}, (samples + batch_size - 1) / batch_size, [&](std::uint64_t b) {
-        // A generator for each batch: the points do not depend on who works on which batch.
-        std::mt19937_64 random(seed * 0x9e3779b97f4a7c15u + b);
-        std::uniform_real_distribution<double> uniform;
-        thread_local SurfaceBatch batch;
-        thread_local std::vector<float> planes;
-        planes.resize(floats * batch_size);
-        batch.size = int(std::min(batch_size, samples - b * batch_size));
-        batch.filter_width = float(filter_width);
-        for (int i = 0; i < batch.size; ++i) {
-            const double x = uniform(random), y = uniform(random), z = uniform(random);
-            const MeshPoint m = sampler.at({x, y, z});
-            batch.set(i, m.P, m.N, m.uv, m.dPdu);
-        }
-        shader.bake(batch, planes.data());
-        for (int i = 0; i < batch.size; ++i) {
-            std::array<float, BrickPyramid::max_floats> value{};
-            pyramid.lookup({batch.P[0][i], batch.P[1][i], batch.P[2][i]}, 0, value.data());
-            for (std::size_t k = 0; k < floats; ++k) {
-                const float exact = planes[k * batch_size + std::size_t(i)];
-                errors[k][b * batch_size + std::uint64_t(i)] = std::abs(value[k] - exact);
+    tbb::parallel_for(
+        std::uint64_t{0}, (samples + batch_size - 1) / batch_size, [&](std::uint64_t b) {
+            // A generator for each batch: the points do not depend on who works on which batch.
+            std::mt19937_64 random(seed * 0x9e3779b97f4a7c15u + b);
+            std::uniform_real_distribution<double> uniform;
+            thread_local SurfaceBatch batch;
+            thread_local std::vector<float> planes;
+            planes.resize(floats * batch_size);
+            batch.size = int(std::min(batch_size, samples - b * batch_size));
+            batch.filter_width = float(filter_width);
+            for (int i = 0; i < batch.size; ++i) {
+                const double x = uniform(random), y = uniform(random), z = uniform(random);
+                const MeshPoint m = sampler.at({x, y, z});
+                batch.set(i, m.P, m.N, m.uv, tangent(mesh, m));
             }
-        }
-    });
+            shader.bake(batch, planes.data());
+            for (int i = 0; i < batch.size; ++i) {
+                std::array<float, BrickPyramid::max_floats> value{};
+                pyramid.lookup({batch.P[0][i], batch.P[1][i], batch.P[2][i]}, 0, value.data());
+                for (std::size_t k = 0; k < floats; ++k) {
+                    const float exact = planes[k * batch_size + std::size_t(i)];
+                    errors[k][b * batch_size + std::uint64_t(i)] = std::abs(value[k] - exact);
+                }
+            }
+        });
 
     std::vector<ErrorFigures> result;
     std::size_t first = 0;
     for (const ChannelInfo& channel : shader.info().channels) {
         std::vector<float> all;
         for (int c = 0; c < channel.components; ++c) {
-            all.insert(all.end(), errors[first + std::size_t(c)].begin(), errors[first + std::size_t(c)].end());
+            all.insert(all.end(), errors[first + std::size_t(c)].begin(),
+                       errors[first + std::size_t(c)].end());
         }
         result.push_back(figures(all, samples));
         first += std::size_t(channel.components);

@@ -20,6 +20,7 @@ struct Words {
     std::string frames, resolution, max_memory;
     std::string compression = "zip", progress = "auto";
     double voxel_size = 0.0, max_error = 0.0;
+    bool irradiance = false;
     std::int64_t seed = 0;  // signed: "-1" would become a large number
 };
 
@@ -33,16 +34,20 @@ Compression parse_compression(const std::string& word) {
 void check(const Options& options) {
     if (options.list_shaders || !options.describe.empty()) return;
     if (options.shader.empty() || options.scene.empty()) {
-        throw Error("give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb; --help explains");
+        throw Error(
+            "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb; --help explains");
     }
     if (options.output.empty() && !options.dry_run) {
         throw Error("where to? give -o FILE.vdb (or --dry-run to see what a bake would cost)");
     }
     if (!options.output.empty() && !options.output.ends_with(".vdb")) {
-        throw Error(fmt::format("{}: grids are written as .vdb; give the name that ending", options.output));
+        throw Error(fmt::format("{}: grids are written as .vdb; give the name that ending",
+                                options.output));
     }
     if (options.voxel_size && options.max_error) {
-        throw Error("--voxel-size and --max-error exclude each other: one sets the voxel, the other finds it");
+        throw Error(
+            "--voxel-size and --max-error exclude each other: one sets the voxel, the other finds "
+            "it");
     }
     if (options.voxel_size && !(*options.voxel_size > 0.0 && std::isfinite(*options.voxel_size))) {
         throw Error(fmt::format("--voxel-size {}: must be above 0", *options.voxel_size));
@@ -50,6 +55,8 @@ void check(const Options& options) {
     if (options.max_error && !(*options.max_error > 0.0 && std::isfinite(*options.max_error))) {
         throw Error(fmt::format("--max-error {}: must be above 0", *options.max_error));
     }
+    refuse_same_file(
+        {{"SCENE", options.scene}, {"-o", options.output}, {"--stats", options.stats}});
     if (!(options.fps > 0.0) || !std::isfinite(options.fps)) {
         throw Error(fmt::format("--fps {}: must be above 0", options.fps));
     }
@@ -72,14 +79,17 @@ void interpret(const CLI::App& app, const Words& words, Options& options) {
     options.progress = parse_progress(words.progress);
     if (words.seed < 0) throw Error(fmt::format("--seed {}: must be 0 or above", words.seed));
     options.seed = std::uint64_t(words.seed);
+    if (words.irradiance) throw Error("--irradiance is not built yet: this version bakes colour");
     check(options);
 }
 
 void add_what(CLI::App& app, Options& options, Words& words) {
     app.add_option("SHADER", options.shader, "one of --list-shaders");
     app.add_option("SCENE", options.scene, "glTF, OBJ or PLY file");
-    app.add_flag("--list-shaders", options.list_shaders, "all shaders with their parameters")->group("Shaders");
-    app.add_flag("--markdown", options.markdown, "--list-shaders as a table for a README")->group("Shaders");
+    app.add_flag("--list-shaders", options.list_shaders, "all shaders with their parameters")
+        ->group("Shaders");
+    app.add_flag("--markdown", options.markdown, "--list-shaders as a table for a README")
+        ->group("Shaders");
     app.add_option("--describe", options.describe, "one shader with its parameters")
         ->type_name("SHADER")
         ->group("Shaders");
@@ -87,9 +97,10 @@ void add_what(CLI::App& app, Options& options, Words& words) {
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false)
         ->group("Shaders");
-    app.add_option("--object", options.objects,
-                   "objects to bake, with * and ?; may be repeated (default: those that wear the shader, "
-                   "or all if none wears any)")
+    app.add_option(
+           "--object", options.objects,
+           "objects to bake, with * and ?; may be repeated (default: those that wear the shader, "
+           "or all if none wears any)")
         ->type_name("GLOB")
         ->allow_extra_args(false)
         ->group("Objects");
@@ -97,13 +108,16 @@ void add_what(CLI::App& app, Options& options, Words& words) {
 
 void add_resolution(CLI::App& app, Options& options, Words& words) {
     app.add_option("--voxel-size", words.voxel_size,
-                   "edge of a voxel, object space (default: half the smallest pixel footprint over the frames)")
+                   "edge of a voxel, object space (default: half the smallest pixel footprint over "
+                   "the frames)")
         ->type_name("H")
         ->group("Resolution");
-    app.add_option("--max-error", words.max_error, "find the largest voxel with an RMSE of at most E")
+    app.add_option("--max-error", words.max_error,
+                   "find the largest voxel with an RMSE of at most E")
         ->type_name("E")
         ->group("Resolution");
-    app.add_option("--frames", words.frames, "frames of the camera path (default: the scene's animation)")
+    app.add_option("--frames", words.frames,
+                   "frames of the camera path (default: the scene's animation)")
         ->type_name("A-B[xSTEP]")
         ->group("Resolution");
     app.add_option("--fps", options.fps, "frames a second of the animation")
@@ -120,12 +134,15 @@ void add_resolution(CLI::App& app, Options& options, Words& words) {
 }
 
 void add_file(CLI::App& app, Options& options, Words& words) {
-    app.add_option("-o,--output", options.output, "file to write")->type_name("FILE.vdb")->group("File");
+    app.add_option("-o,--output", options.output, "file to write")
+        ->type_name("FILE.vdb")
+        ->group("File");
     app.add_option("--compression", words.compression, "zip, blosc or none")
         ->type_name("NAME")
         ->capture_default_str()
         ->group("File");
-    app.add_flag("--half", options.file.half, "values as half floats: half the size, error up to 2^-12 more")
+    app.add_flag("--half", options.file.half,
+                 "values as half floats: half the size, error up to 2^-12 more")
         ->group("File");
     app.add_option("--stats", options.stats, "write what was done and measured for programs")
         ->type_name("FILE.json")
@@ -133,15 +150,18 @@ void add_file(CLI::App& app, Options& options, Words& words) {
 }
 
 void add_work(CLI::App& app, Options& options, Words& words) {
+    app.add_flag("--irradiance", words.irradiance)->group("");  // named by the design, to come
     app.add_flag("--dry-run", options.dry_run, "only say what the bake would cost")->group("Work");
-    app.add_option("--max-memory", words.max_memory, "limit, as 2G or 512M (default: half of the machine's)")
+    app.add_option("--max-memory", words.max_memory,
+                   "limit, as 2G or 512M (default: half of the machine's)")
         ->type_name("SIZE")
         ->group("Work");
     app.add_option("--threads", options.threads, "0: one for each core")
         ->type_name("N")
         ->capture_default_str()
         ->group("Work");
-    app.add_option("--progress", words.progress, "auto: a bar on a terminal, lines elsewhere; plain: lines; none")
+    app.add_option("--progress", words.progress,
+                   "auto: a bar on a terminal, lines elsewhere; plain: lines; none")
         ->type_name("STYLE")
         ->capture_default_str()
         ->group("Work");
@@ -157,7 +177,8 @@ Options parse_options(int argc, const char* const* argv, std::string& help) {
     Options options;
     Words words;
     words.resolution = fmt::format("{}x{}", options.resolution.x, options.resolution.y);
-    CLI::App app("Bakes a procedural shader into sparse OpenVDB grids around object surfaces.", "estara-bake");
+    CLI::App app("Bakes a procedural shader into sparse OpenVDB grids around object surfaces.",
+                 "estara-bake");
     app.set_version_flag("--version", fmt::format("estara-bake {}", version));
     app.footer(examples);
     add_what(app, options, words);

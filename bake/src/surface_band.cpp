@@ -20,8 +20,9 @@ namespace estara {
 namespace {
 
 /// Index of the smallest voxel coordinate that the mesh's bounds have: the object lies in one
-/// octant, where an OpenVDB tree is smallest, with room for the cells around it.
-constexpr double margin = 8.0;
+/// octant, where an OpenVDB tree is smallest, with room for the cells around it; and a flat side of
+/// it lies between two layers of voxels, not in one, where it would touch three.
+constexpr double margin = 8.5;
 
 /// Where a mesh lies on its grid of voxels.
 struct Lattice {
@@ -45,9 +46,10 @@ Lattice make_lattice(const Mesh& mesh, double voxel_size) {
     const glm::dvec3 extent = glm::dvec3(box.max) - glm::dvec3(box.min);
     const double widest = std::max({extent.x, extent.y, extent.z}) / voxel_size;
     if (widest > 131072.0) {
-        throw Error(fmt::format("voxel size {:.6g} divides the object into {:.6g} voxels a side; at most "
-                                "131072 are possible, of {:.6g}",
-                                voxel_size, widest, voxel_size * widest / 131072.0));
+        throw Error(
+            fmt::format("voxel size {:.6g} divides the object into {:.6g} voxels a side; at most "
+                        "131072 are possible, of {:.6g}",
+                        voxel_size, widest, voxel_size * widest / 131072.0));
     }
     // A hit point is interpolated in float: three products and two sums, each off by half an ulp of
     // the largest coordinate; four ulps bound it (with what the lookup itself rounds).
@@ -55,9 +57,10 @@ Lattice make_lattice(const Mesh& mesh, double voxel_size) {
     const double extreme = std::max({largest.x, largest.y, largest.z});
     const double slack = 1e-4 + 4.0 * extreme * 0x1p-23 / voxel_size;
     if (slack > 0.25) {
-        throw Error(fmt::format("voxel size {:.6g} is too small for coordinates as large as {:.6g}, which "
-                                "floats tell apart by {:.2g}; move the object to its own origin",
-                                voxel_size, extreme, extreme * 0x1p-23));
+        throw Error(
+            fmt::format("voxel size {:.6g} is too small for coordinates as large as {:.6g}, which "
+                        "floats tell apart by {:.2g}; move the object to its own origin",
+                        voxel_size, extreme, extreme * 0x1p-23));
     }
     return {voxel_size, glm::dvec3(box.min) - margin * voxel_size, slack};
 }
@@ -97,16 +100,17 @@ void list_blocks(const std::array<glm::dvec3, 3>& v, std::uint32_t triangle, dou
 
 std::vector<Entry> list_entries(const Mesh& mesh, const Lattice& lattice) {
     tbb::enumerable_thread_specific<std::vector<Entry>> lists;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 256), [&](const auto& range) {
-        std::vector<Entry>& list = lists.local();
-        for (std::size_t t = range.begin(); t < range.end(); ++t) {
-            const auto v = lattice.corners(mesh, t);
-            const glm::dvec3 lo = glm::min(v[0], glm::min(v[1], v[2])) - lattice.slack - 1.0;
-            const glm::dvec3 hi = glm::max(v[0], glm::max(v[1], v[2])) + lattice.slack + 1.0;
-            list_blocks(v, std::uint32_t(t), lattice.slack, glm::ivec3(glm::floor(lo / 8.0)),
-                        glm::ivec3(glm::floor(hi / 8.0)), list);
-        }
-    });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 256), [&](const auto& range) {
+            std::vector<Entry>& list = lists.local();
+            for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                const auto v = lattice.corners(mesh, t);
+                const glm::dvec3 lo = glm::min(v[0], glm::min(v[1], v[2])) - lattice.slack - 1.0;
+                const glm::dvec3 hi = glm::max(v[0], glm::max(v[1], v[2])) + lattice.slack + 1.0;
+                list_blocks(v, std::uint32_t(t), lattice.slack, glm::ivec3(glm::floor(lo / 8.0)),
+                            glm::ivec3(glm::floor(hi / 8.0)), list);
+            }
+        });
     std::vector<Entry> all;
     for (std::vector<Entry>& list : lists) {
         all.insert(all.end(), list.begin(), list.end());
@@ -173,12 +177,15 @@ struct BlockBuilder {
     BlockMask active, cells;
     std::array<Nearest, 512> nearest;
 
-    void add(const std::array<glm::dvec3, 3>& v, std::uint32_t triangle, const glm::ivec3& origin, double slack) {
+    void add(const std::array<glm::dvec3, 3>& v, std::uint32_t triangle, const glm::ivec3& origin,
+             double slack) {
         BlockMask touched;
         const TriangleBox test(v, 1.0 + 2.0 * slack);
         const glm::dvec3 base(origin);
-        const glm::ivec3 lo = glm::max(glm::ivec3(glm::floor(test.min() - slack - base)), glm::ivec3(-1));
-        const glm::ivec3 hi = glm::min(glm::ivec3(glm::floor(test.max() + slack - base)), glm::ivec3(7));
+        const glm::ivec3 lo =
+            glm::max(glm::ivec3(glm::floor(test.min() - slack - base)), glm::ivec3(-1));
+        const glm::ivec3 hi =
+            glm::min(glm::ivec3(glm::floor(test.max() + slack - base)), glm::ivec3(7));
         for (int x = lo.x; x <= hi.x; ++x) {
             for (int y = lo.y; y <= hi.y; ++y) {
                 for (int z = lo.z; z <= hi.z; ++z) {
@@ -225,7 +232,8 @@ struct FinishedBlock {
     std::vector<Nearest> voxels;
 };
 
-FinishedBlock build_block(const Mesh& mesh, const Lattice& lattice, const Entry* first, const Entry* last) {
+FinishedBlock build_block(const Mesh& mesh, const Lattice& lattice, const Entry* first,
+                          const Entry* last) {
     thread_local BlockBuilder builder;  // 24 KiB that every block needs anew
     builder = BlockBuilder{};
     for (const Entry* e = first; e != last; ++e) {
@@ -233,7 +241,8 @@ FinishedBlock build_block(const Mesh& mesh, const Lattice& lattice, const Entry*
     }
     FinishedBlock block{builder.active, builder.cells, {}};
     block.voxels.reserve(std::size_t(builder.active.count()));
-    BlockBuilder::for_each_bit(builder.active, [&](int bit) { block.voxels.push_back(builder.nearest[bit]); });
+    BlockBuilder::for_each_bit(builder.active,
+                               [&](int bit) { block.voxels.push_back(builder.nearest[bit]); });
     return block;
 }
 
@@ -254,7 +263,8 @@ SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
 
     std::vector<FinishedBlock> finished(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        finished[i] = build_block(mesh, lattice, &entries[starts[i]], entries.data() + starts[i + 1]);
+        finished[i] =
+            build_block(mesh, lattice, &entries[starts[i]], entries.data() + starts[i + 1]);
     });
 
     SurfaceBand band{voxel_size, lattice.origin, {}, {}, {}, {}, {}};
@@ -287,10 +297,13 @@ bool is_closed(const Mesh& mesh) {
     // Vertices at the same position get the same number.
     std::vector<std::uint32_t> order(mesh.P.size()), number(mesh.P.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::uint32_t i) { return std::tie(mesh.P[i].x, mesh.P[i].y, mesh.P[i].z); };
+    const auto key = [&](std::uint32_t i) {
+        return std::tie(mesh.P[i].x, mesh.P[i].y, mesh.P[i].z);
+    };
     tbb::parallel_sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
     for (std::size_t i = 0; i < order.size(); ++i) {
-        number[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? number[order[i - 1]] : std::uint32_t(i);
+        number[order[i]] =
+            i > 0 && key(order[i]) == key(order[i - 1]) ? number[order[i - 1]] : std::uint32_t(i);
     }
 
     struct Edge {
@@ -315,7 +328,8 @@ bool is_closed(const Mesh& mesh) {
     for (std::size_t i = 0; i < edges.size(); i += 2) {
         const Edge &a = edges[i], &b = edges[i + 1];
         const bool pair = a.low == b.low && a.high == b.high && a.ascending != b.ascending;
-        const bool third = i + 2 < edges.size() && edges[i + 2].low == a.low && edges[i + 2].high == a.high;
+        const bool third =
+            i + 2 < edges.size() && edges[i + 2].low == a.low && edges[i + 2].high == a.high;
         if (!pair || third) return false;
     }
     return true;

@@ -19,7 +19,8 @@ public:
         m_min = glm::min(v[0], glm::min(v[1], v[2]));
         m_max = glm::max(v[0], glm::max(v[1], v[2]));
         m_n = glm::cross(v[1] - v[0], v[2] - v[0]);
-        const glm::dvec3 far(m_n.x > 0 ? size : 0.0, m_n.y > 0 ? size : 0.0, m_n.z > 0 ? size : 0.0);
+        const glm::dvec3 far(m_n.x > 0 ? size : 0.0, m_n.y > 0 ? size : 0.0,
+                             m_n.z > 0 ? size : 0.0);
         m_d_far = glm::dot(m_n, far - v[0]);
         m_d_near = glm::dot(m_n, glm::dvec3(size) - far - v[0]);
         for (int plane = 0; plane < 3; ++plane) {

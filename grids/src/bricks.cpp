@@ -114,7 +114,8 @@ std::string title(const TextureGrid& grid) {
 
 }  // namespace
 
-/// A point located on a level: its cell's first voxel, its brick's range and where in the cell it is.
+/// A point located on a level: its cell's first voxel, its brick's range and where in the cell it
+/// is.
 struct BrickPyramid::Tap {
     const std::uint16_t* voxel = nullptr;  ///< null: no brick there
     const float* range = nullptr;
@@ -337,8 +338,7 @@ bool BrickPyramid::blend(const Tap& fine, const Tap& coarse, float weight,
 }
 
 bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
-    const Tap tap =
-        m_levels[std::size_t(level)].locate(glm::dvec3(P) - m_origin, m_floats);
+    const Tap tap = m_levels[std::size_t(level)].locate(glm::dvec3(P) - m_origin, m_floats);
     return blend(tap, {}, 0.0f, out);
 }
 

@@ -7,7 +7,7 @@ namespace estara {
 
 /// "color", "color_level_1", "color_vase", "color_vase_level_1".
 /// @param what    a channel's name, "surface" or "density"
-/// @param object  "" in a file of one object
+/// @param object  "" in a file of one object, whatever the object's name
 inline std::string grid_name(const std::string& what, const std::string& object, int level) {
     std::string name = what;
     if (!object.empty()) name += '_' + object;

@@ -56,6 +56,7 @@ public:
             throw Error(fmt::format("{}: not made by estara-bake (no grid has {}); it has: {}",
                                     m_path, key::shader, fmt::join(names, ", ")));
         }
+        m_is_alone = heads.size() == 1;
         std::vector<TextureGrid> grids;
         for (const auto& [object, head] : heads) grids.push_back(read_object(*head));
         return grids;
@@ -118,7 +119,7 @@ private:
     /// Reads one level of the last channel of `to`.
     void read_channel(int level, TextureGrid& to) {
         GridChannel& channel = to.channels.back();
-        const std::string name = grid_name(channel.name, to.object, level);
+        const std::string name = grid_name(channel.name, m_is_alone ? "" : to.object, level);
         if (!m_file.hasGrid(name)) fail(fmt::format("grid \"{}\" is missing", clamped(name)));
         const GridBase::ConstPtr grid = m_file.readGrid(name);
         const auto colors = openvdb::gridConstPtrCast<Vec3SGrid>(grid);
@@ -220,6 +221,7 @@ private:
 
     std::string m_path;
     openvdb::io::File m_file;
+    bool m_is_alone = false;  // one object: grids have plain names
 };
 
 }  // namespace

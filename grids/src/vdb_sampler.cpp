@@ -74,8 +74,9 @@ struct VdbSampler::Impl {
 VdbSampler::VdbSampler(const std::string& path, const std::string& object)
     : m_impl(std::make_unique<Impl>()) {
     const std::vector<TextureGrid> grids = read_vdb(path);  // makes sure that all is there
-    const auto found = std::find_if(grids.begin(), grids.end(),
-                                    [&](const TextureGrid& grid) { return grid.object == object; });
+    const auto found = std::find_if(grids.begin(), grids.end(), [&](const TextureGrid& grid) {
+        return grid.object == object || (object.empty() && grids.size() == 1);
+    });
     if (found == grids.end()) {
         std::vector<std::string> names;
         for (const TextureGrid& grid : grids) names.push_back('"' + grid.object + '"');
@@ -87,7 +88,8 @@ VdbSampler::VdbSampler(const std::string& path, const std::string& object)
     for (int n = 0; n < int(found->levels.size()); ++n) {
         std::vector<AnyChannel>& channels = m_impl->levels.emplace_back();
         for (const GridChannel& channel : found->channels) {
-            channels.push_back(open_channel(file, grid_name(channel.name, object, n)));
+            const std::string suffix = grids.size() == 1 ? "" : object;
+            channels.push_back(open_channel(file, grid_name(channel.name, suffix, n)));
         }
         const AnyChannel& first = channels.front();
         m_impl->transforms.push_back(first.color ? first.color->grid->transformPtr()

@@ -180,12 +180,13 @@ void check_writable(const std::string& path, const TextureGrid& grid) {
 std::vector<Plan> plans(const std::string& path, const std::vector<TextureGrid>& grids, bool half) {
     std::vector<Plan> result;
     for (const TextureGrid& grid : grids) {
+        const std::string object = grids.size() == 1 ? "" : grid.object;
         check_writable(path, grid);
         const std::vector<float> means = plane_means(grid);
         std::size_t first = 0;
         for (std::size_t c = 0; c < grid.channels.size(); ++c) {
             for (int n = 0; n < int(grid.levels.size()); ++n) {
-                result.push_back({grid_name(grid.channels[c].name, grid.object, n),
+                result.push_back({grid_name(grid.channels[c].name, object, n),
                                   [&grid, n, c, first, means, half] {
                                       return build_channel(grid, n, c, first, means, half);
                                   }});
@@ -193,11 +194,11 @@ std::vector<Plan> plans(const std::string& path, const std::vector<TextureGrid>&
             first += std::size_t(grid.channels[c].components);
         }
         if (!grid.distance.empty()) {
-            result.push_back({grid_name("surface", grid.object, 0),
+            result.push_back({grid_name("surface", object, 0),
                               [&grid, half] { return build_surface(grid, half); }});
         }
-        result.push_back({grid_name("density", grid.object, 0),
-                          [&grid, half] { return build_density(grid, half); }});
+        result.push_back(
+            {grid_name("density", object, 0), [&grid, half] { return build_density(grid, half); }});
     }
     std::set<std::string> names;
     for (const Plan& plan : result) {

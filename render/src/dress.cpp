@@ -10,8 +10,6 @@
 namespace estara {
 namespace {
 
-constexpr int most_frames_looked_at = 64;
-
 /// A width that is > 0 even for an object without extent.
 float positive(float width) noexcept { return width > 0.0f ? width : 1.0f; }
 
@@ -76,16 +74,10 @@ void put_on(Scene& scene, const std::string& shader, const std::vector<Setting>&
 
 std::vector<float> direct_filter_widths(const Scene& scene, RayScene& rays, int camera, double fps,
                                         int width, int height) {
-    FrameRange frames = animated_frames(scene, fps);
-    frames.step = std::max(1, (frames.count() - 1) / most_frames_looked_at + 1);
-    std::vector<float> widths =
-        smallest_footprints(scene, rays, camera, frames, fps, width, height);
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-        const float diagonal = bounds(scene.objects[i].mesh).diagonal();
-        widths[i] = std::isfinite(widths[i]) ? std::max(0.5f * widths[i], diagonal / 16384.0f)
-                                             : diagonal / 512.0f;
-        widths[i] = positive(widths[i]);
-    }
+    const std::vector<double> sizes =
+        automatic_voxel_sizes(scene, rays, camera, animated_frames(scene, fps), fps, width, height);
+    std::vector<float> widths;
+    for (const double size : sizes) widths.push_back(float(size));
     return widths;
 }
 

@@ -128,4 +128,11 @@ void write_image(const std::string& path, ImageFormat format, const Film& film) 
     file.commit();
 }
 
+glm::ivec2 image_size(const std::string& path) {
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    if (input) return {input->spec().width, input->spec().height};
+    (void)OIIO::geterror();  // that it cannot be read is the answer
+    return {0, 0};
+}
+
 }  // namespace estara

@@ -56,7 +56,7 @@ std::vector<PosedInstance> pose_instances(const Scene& scene, const Pose& pose) 
         const glm::mat4& m = pose.world_from_node[std::size_t(instance.node)];
         const glm::dmat3 linear{glm::mat3(m)};
         posed.push_back({instance.object, m, glm::mat3(normal_matrix(linear)),
-                         float(largest_singular_value(linear))});
+                         float(largest_singular_value(linear)), SurfaceOffset(m)});
     }
     return posed;
 }

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "estara/scenes/offset.h"
 #include "estara/scenes/scene.h"
 
 namespace estara {
@@ -14,6 +15,7 @@ struct PosedInstance {
     glm::mat4 world_from_object;
     glm::mat3 world_from_normal;  ///< inverse transpose up to a positive factor
     float largest_scale;          ///< world length of the longest image of a unit vector
+    SurfaceOffset offset;         ///< of rays that leave it
 };
 
 std::vector<PosedInstance> pose_instances(const Scene& scene, const Pose& pose);

@@ -20,6 +20,7 @@ constexpr const char* examples = R"(Examples:
 struct Words {
     std::vector<std::string> outputs, params, aovs;
     std::string frames, resolution, ambient, compare;
+    std::string cache_memory, window;  // named by the design, to come
     std::string strategy = to_string(Options{}.strategy);
     std::string progress = "auto";
 };
@@ -60,6 +61,12 @@ void check_names(const Options& options) {
             throw Error(fmt::format("-o {}: given twice", output.text()));
         }
     }
+    std::vector<std::pair<std::string, std::string>> files{
+        {"SCENE", options.scene}, {"--stats", options.stats}, {"--report", options.report}};
+    for (const std::string& grid : options.grids) files.emplace_back("--grids", grid);
+    const int frame = options.frames ? options.frames->first : 1;
+    for (const FilePattern& output : options.outputs) files.emplace_back("-o", output.path(frame));
+    refuse_same_file(files);
     const bool has_exr =
         std::any_of(options.outputs.begin(), options.outputs.end(),
                     [](const FilePattern& o) { return o.format() == ImageFormat::exr; });
@@ -79,11 +86,21 @@ void interpret(const Words& words, Options& options) {
     options.frame.height = resolution.y;
     if (!words.ambient.empty()) {
         options.ambient = naming("--ambient", [&] { return parse_color(words.ambient); });
+        if (glm::any(glm::lessThan(*options.ambient, glm::vec3(0.0f)))) {
+            throw Error(fmt::format("--ambient {}: must not be negative", words.ambient));
+        }
     }
     if (!words.compare.empty() && words.compare != "direct") {
         throw Error(fmt::format("--compare: no '{}'; there is: direct", words.compare));
     }
     options.compare_direct = !words.compare.empty();
+    if (options.compare_direct && options.strategy == Strategy::direct) {
+        throw Error("--compare direct needs another strategy than direct to compare it with");
+    }
+    if (!words.cache_memory.empty() || !words.window.empty()) {
+        throw Error(
+            "--cache-memory and --window belong to strategy 'cache', which is not built yet");
+    }
     options.progress = parse_progress(words.progress);
     check_ranges(options);
     check_names(options);
@@ -128,7 +145,8 @@ void add_output(CLI::App& app, Options& options, Words& words) {
         ->type_name("NAME")
         ->allow_extra_args(false)
         ->group("Output");
-    app.add_flag("--resume", options.resume, "skip frames whose images are all there")
+    app.add_flag("--resume", options.resume,
+                 "skip frames whose images are all there, in this resolution")
         ->group("Output");
     app.add_option("--report", options.report, "write a page of times and errors")
         ->type_name("FILE.html")
@@ -171,6 +189,8 @@ void add_work(CLI::App& app, Options& options, Words& words) {
                    "render each frame directly too; print error and times")
         ->type_name("direct")
         ->group("Work");
+    app.add_option("--cache-memory", words.cache_memory)->group("");
+    app.add_option("--window", words.window)->group("");
     app.add_option("--threads", options.threads, "0: one for each core")
         ->type_name("N")
         ->capture_default_str()

@@ -1,3 +1,4 @@
+#include "estara/render/image_file.h"
 #include "estara/render/run.h"
 
 #include <fmt/format.h>
@@ -16,10 +17,10 @@
 namespace estara {
 namespace {
 
+/// Whether every image of a frame is there, readable and of the size that is asked for.
 bool is_finished(const Options& options, int frame) {
     return std::all_of(options.outputs.begin(), options.outputs.end(), [&](const FilePattern& o) {
-        std::error_code unreadable;  // then it is not there for us
-        return std::filesystem::is_regular_file(o.path(frame), unreadable);
+        return image_size(o.path(frame)) == glm::ivec2(options.frame.width, options.frame.height);
     });
 }
 
@@ -36,18 +37,6 @@ void check_folders(const Options& options, int frame) {
     for (const FilePattern& output : options.outputs) const PendingFile probe(output.path(frame));
     if (!options.stats.empty()) const PendingFile probe(options.stats);
     if (!options.report.empty()) const PendingFile probe(options.report);
-}
-
-void write_text(const std::string& path, const std::string& text) {
-    PendingFile file(path);
-    std::ofstream out(file.path(), std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-        throw Error(fmt::format("{}: cannot be written; the disk may be full", path),
-                    ExitStatus::failed);
-    }
-    file.commit();
 }
 
 std::string counted(std::uint64_t n, const char* one, const char* many) {

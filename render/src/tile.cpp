@@ -11,8 +11,10 @@ namespace {
 // A shadow ray ends a little before its light: what holds the light is often exactly there.
 constexpr float shadow_end = 0.9999f;
 
-/// v / |v|, or `otherwise` for a vector without direction.
+/// v / |v|, or `otherwise` for a vector without direction. In float where the square is one.
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
+    const float square = glm::dot(v, v);
+    if (square > 1e-30f && square < 1e30f) return v / std::sqrt(square);
     const double length = glm::length(glm::dvec3(v));
     return length > 0.0 && std::isfinite(length) ? glm::vec3(glm::dvec3(v) / length) : otherwise;
 }
@@ -29,10 +31,6 @@ int color_offset(const ShaderInfo& info) noexcept {
         offset += channel.components;
     }
     return -1;
-}
-
-void set_point(SurfaceBatch& batch, int i, const MeshPoint& point) noexcept {
-    batch.set(i, point.P, point.N, point.uv, point.dPdu);
 }
 
 }  // namespace
@@ -105,14 +103,14 @@ void TileRenderer::group_by_instance(const FrameContext& frame) {
         first += size;
     }
     m_order.resize(std::size_t(first));
-    m_samples.resize(std::size_t(first));
+    m_samples.clear();
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
         if (m_hits[i].instance == Hit::none) continue;
         Group& group = m_groups[std::size_t(m_group_of_instance[m_hits[i].instance])];
         m_order[std::size_t(group.last++)] = std::uint32_t(i);
     }
     for (const Group& group : m_groups) m_group_of_instance[group.instance] = -1;
-    statistics.samples += m_samples.size();
+    statistics.samples += m_order.size();
 }
 
 void TileRenderer::place_on_surface(const FrameContext& frame, const Group& group) {
@@ -120,18 +118,15 @@ void TileRenderer::place_on_surface(const FrameContext& frame, const Group& grou
     const Mesh& mesh = frame.scene.objects[std::size_t(instance.object)].mesh;
     for (int j = group.first; j < group.last; ++j) {
         const std::uint32_t i = m_order[std::size_t(j)];
-        Sample& s = m_samples[std::size_t(j)];
-        s.pixel = int(i);
-        s.point = mesh_point(mesh, m_hits[i].triangle, m_hits[i].b1, m_hits[i].b2);
-        s.P = glm::vec3(instance.world_from_object * glm::vec4(s.point.P, 1.0f));
-        s.distance = frame.camera.distance(s.P);
-        const glm::vec3 V = frame.camera.view_direction(s.P).vec();
-        s.Ng = unit_or(instance.world_from_normal * s.point.Ng, V);
-        s.N = unit_or(instance.world_from_normal * s.point.N, s.Ng);
-        if (glm::dot(s.Ng, V) < 0.0f) {  // N_f: the camera decides on the side and on nothing else
-            s.Ng = -s.Ng;
-            s.N = -s.N;
-        }
+        const MeshPoint point = mesh_point(mesh, m_hits[i].triangle, m_hits[i].b1, m_hits[i].b2);
+        const glm::vec3 P(instance.world_from_object * glm::vec4(point.P, 1.0f));
+        const Sight sight = frame.camera.sight(P);
+        const glm::vec3 V = sight.V.vec();
+        const glm::vec3 Ng = unit_or(instance.world_from_normal * point.Ng, V);
+        const glm::vec3 N = unit_or(instance.world_from_normal * point.N, Ng);
+        // N_f: the camera decides on the side and on nothing else.
+        const float side = glm::dot(Ng, V) < 0.0f ? -1.0f : 1.0f;
+        m_samples.push_back({int(i), point, P, side * Ng, side * N, sight});
     }
 }
 
@@ -161,14 +156,14 @@ void TileRenderer::find_candidates(const PosedLight& source, const FrameContext&
     m_candidates.clear();
     m_rays.clear();
     for (const Group& group : m_groups) {
-        const glm::mat4& world_from_object = frame.instances[group.instance].world_from_object;
+        const SurfaceOffset& offset = frame.instances[group.instance].offset;
         for (int j = group.first; j < group.last; ++j) {
             const Sample& s = m_samples[std::size_t(j)];
             const LightSample sample = sample_light(source, s.P);
             const float cosine = glm::dot(s.N, sample.L);
             if (!(cosine > 0.0f) || sample.Cl == glm::vec3(0.0f)) continue;
             const glm::vec3 side = glm::dot(s.Ng, sample.L) < 0.0f ? -s.Ng : s.Ng;
-            const glm::vec3 origin = offset_from_surface(s.P, side, world_from_object, s.point.P);
+            const glm::vec3 origin = offset.from(s.P, side, s.point.P);
             m_candidates.push_back({j, {sample.L, sample.Cl}, cosine});
             if (std::isfinite(sample.distance)) {
                 m_rays.push_back({origin, source.position - origin, 0.0f, shadow_end});
@@ -177,6 +172,16 @@ void TileRenderer::find_candidates(const PosedLight& source, const FrameContext&
             }
         }
     }
+}
+
+/// Makes sample j the batch's point i. The tangent of a mesh is for shaders of its surface only.
+void TileRenderer::set_point(const FrameContext& frame, const Group& group, int i, int j) {
+    const auto object = std::size_t(frame.instances[group.instance].object);
+    const MeshPoint& point = m_samples[std::size_t(j)].point;
+    const bool needs_tangent = frame.shading[object].shader->domain() == Domain::surface;
+    m_batch.set(i, point.P, point.N, point.uv,
+                needs_tangent ? tangent(frame.scene.objects[object].mesh, point)
+                              : glm::vec3(1.0f, 0.0f, 0.0f));
 }
 
 /// Fills m_planes, rows by the group's samples.
@@ -190,9 +195,7 @@ void TileRenderer::evaluate(const FrameContext& frame, const Group& group) {
     } else {
         m_batch.size = group.last - group.first;
         m_batch.filter_width = shading.filter_width;
-        for (int i = 0; i < m_batch.size; ++i) {
-            set_point(m_batch, i, m_samples[std::size_t(group.first + i)].point);
-        }
+        for (int i = 0; i < m_batch.size; ++i) set_point(frame, group, i, group.first + i);
         shading.shader->bake(m_batch, m_planes.data());
     }
     statistics.evaluation_seconds += time.seconds();
@@ -212,7 +215,7 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
     for (std::size_t i = 0; i < size; ++i) {
         const Sample& s = m_samples[std::size_t(group.first) + i];
         m_P[i] = s.point.P;
-        m_footprints[i] = s.distance * width_at_1;
+        m_footprints[i] = s.sight.distance * width_at_1;
     }
     shading.pyramid->lookup(m_P, m_footprints, m_planes.data(), capacity, m_found.data());
     m_missed.clear();
@@ -226,8 +229,7 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
     m_batch.size = int(m_missed.size());
     m_batch.filter_width = shading.filter_width;
     for (int m = 0; m < m_batch.size; ++m) {
-        const int i = m_missed[std::size_t(m)];
-        set_point(m_batch, m, m_samples[std::size_t(group.first + i)].point);
+        set_point(frame, group, m, group.first + m_missed[std::size_t(m)]);
     }
     m_missed_planes.resize(m_planes.size());
     shading.shader->bake(m_batch, m_missed_planes.data());
@@ -246,7 +248,7 @@ void TileRenderer::view(const FrameContext& frame, const Group& group) {
         const Sample& s = m_samples[std::size_t(j)];
         const std::size_t row = std::size_t(j) * frame.lights.size();
         m_seen.push_back({s.N,
-                          frame.camera.view_direction(s.P),
+                          s.sight.V,
                           m_E[std::size_t(j)],
                           frame.scene.ambient,
                           {m_lights.data() + row, std::size_t(m_light_count[std::size_t(j)])}});
@@ -264,7 +266,7 @@ void TileRenderer::accumulate(const FrameContext& frame, const Group& group) {
         sum.color += m_Ci[std::size_t(i)];
         sum.N += s.N;
         sum.P += s.P;
-        sum.depth += s.distance;
+        sum.depth += s.sight.distance;
         ++sum.hits;
         for (int c = 0; albedo >= 0 && c < 3; ++c) {
             sum.albedo[c] += m_planes[std::size_t((albedo + c) * capacity + i)];

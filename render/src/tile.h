@@ -48,7 +48,7 @@ private:
         MeshPoint point;  ///< object space
         glm::vec3 P;      ///< world
         glm::vec3 Ng, N;  ///< world, unit, on the side of the eye
-        float distance;   ///< to the eye, world
+        Sight sight;
     };
     /// Samples [first, last) lie on one instance.
     struct Group {
@@ -74,6 +74,7 @@ private:
     void place_on_surface(const FrameContext& frame, const Group& group);
     void light(const FrameContext& frame);
     void find_candidates(const PosedLight& light, const FrameContext& frame);
+    void set_point(const FrameContext& frame, const Group& group, int i, int j);
     void evaluate(const FrameContext& frame, const Group& group);
     void look_up(const FrameContext& frame, const Group& group, const ObjectShading& shading);
     void view(const FrameContext& frame, const Group& group);

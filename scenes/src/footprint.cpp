@@ -102,4 +102,22 @@ std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int c
     return smallest;
 }
 
+std::vector<double> automatic_voxel_sizes(const Scene& scene, RayScene& rays, int camera,
+                                          const FrameRange& frames, double fps, int width,
+                                          int height) {
+    const std::vector<float> footprints =
+        smallest_footprints(scene, rays, camera, frames, fps, width, height);
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < footprints.size(); ++i) {
+        const Mesh& mesh = scene.objects[i].mesh;
+        const double diagonal = bounds(mesh).diagonal();
+        const double wanted =
+            std::isfinite(footprints[i]) ? 0.5 * double(footprints[i]) : diagonal / 512.0;
+        const double finest = std::max(diagonal / 16384.0, finest_voxel_size(mesh));
+        const double size = std::clamp(wanted, finest, std::max(finest, diagonal / 32.0));
+        sizes.push_back(size > 0.0 ? size : 1.0);
+    }
+    return sizes;
+}
+
 }  // namespace estara

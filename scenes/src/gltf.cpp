@@ -195,7 +195,6 @@ private:
             throw Error(fmt::format("{}: \"yfov\" is {}; it must lie between 0 and pi",
                                     at("camera", from.name, std::size_t(index)), yfov));
         }
-        // Blender shows the name of the node, not that of the camera.
         const std::string& node_name = m_scene.nodes[std::size_t(ours)].name;
         m_scene.cameras.push_back({from.name.empty() ? node_name : from.name, ours, float(yfov)});
     }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <new>
@@ -18,7 +19,7 @@ glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& otherwise) noexcept {
 }
 
 /// A tangent that goes round the y axis, eastwards: it varies smoothly everywhere but at the poles.
-glm::vec3 tangent_of(const glm::vec3& N) noexcept {
+glm::vec3 tangent_eastwards(const glm::vec3& N) noexcept {
     const glm::dvec3 n(N);
     const glm::dvec3 east = glm::cross(glm::dvec3(0.0, 1.0, 0.0), n);
     // Below this sine the direction is rounding error.
@@ -26,12 +27,23 @@ glm::vec3 tangent_of(const glm::vec3& N) noexcept {
     return unit_or(glm::cross(n, glm::dvec3(0.0, 0.0, 1.0)), glm::vec3(1.0f, 0.0f, 0.0f));
 }
 
+/// From a triangle's first corner to the others, in double: their differences and products are then
+/// exact enough for slivers and far from the origin.
+struct Edges {
+    glm::dvec3 to_1, to_2;
+};
+
+Edges edges_of(const Mesh& mesh, const glm::uvec3& t) noexcept {
+    const glm::dvec3 p0(mesh.P[t.x]);
+    return {glm::dvec3(mesh.P[t.y]) - p0, glm::dvec3(mesh.P[t.z]) - p0};
+}
+
 /// Change of P with u over a triangle, or a zero vector if uv does not say.
-glm::vec3 tangent_along_u(const glm::dvec3& edge1, const glm::dvec3& edge2, const glm::dvec2& uv1,
+glm::vec3 tangent_along_u(const Edges& edges, const glm::dvec2& uv1,
                           const glm::dvec2& uv2) noexcept {
     const double det = uv1.x * uv2.y - uv2.x * uv1.y;
     if (det == 0.0) return glm::vec3(0.0f);
-    const glm::dvec3 t = (uv2.y * edge1 - uv1.y * edge2) / det;
+    const glm::dvec3 t = (uv2.y * edges.to_1 - uv1.y * edges.to_2) / det;
     const double length = glm::length(t);
     // Outside of this a shader that squares the length in float would get 0 or infinity.
     if (!(length > 1e-15 && length < 1e15)) return glm::vec3(0.0f);
@@ -60,6 +72,14 @@ Box bounds(const Mesh& mesh) {
     return box;
 }
 
+double finest_voxel_size(const Mesh& mesh) {
+    const Box box = bounds(mesh);
+    const glm::dvec3 extent = glm::dvec3(box.max) - glm::dvec3(box.min);
+    const glm::vec3 largest = glm::max(glm::abs(box.min), glm::abs(box.max));
+    const double ulp = double(std::max({largest.x, largest.y, largest.z})) * 0x1p-23;
+    return std::max(16.1 * ulp, std::max({extent.x, extent.y, extent.z}) / 131000.0);
+}
+
 double area(const Mesh& mesh) {
     double sum = 0.0;
     for (const glm::uvec3& t : mesh.triangles) {
@@ -73,28 +93,31 @@ double area(const Mesh& mesh) {
 MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b2) noexcept {
     const glm::uvec3 t = mesh.triangles[triangle];
     const float b0 = 1.0f - b1 - b2;
-    // Differences and products in double: exact enough for slivers and far from the origin.
-    const glm::dvec3 p0(mesh.P[t.x]);
-    const glm::dvec3 edge1 = glm::dvec3(mesh.P[t.y]) - p0;
-    const glm::dvec3 edge2 = glm::dvec3(mesh.P[t.z]) - p0;
+    const Edges edges = edges_of(mesh, t);
 
     MeshPoint point{};
+    point.triangle = triangle;
     point.P = b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z];
-    point.Ng = unit_or(glm::cross(edge1, edge2), glm::vec3(0.0f, 0.0f, 1.0f));
+    point.Ng = unit_or(glm::cross(edges.to_1, edges.to_2), glm::vec3(0.0f, 0.0f, 1.0f));
     point.N = point.Ng;
     if (!mesh.N.empty()) {
         const glm::vec3 n = b0 * mesh.N[t.x] + b1 * mesh.N[t.y] + b2 * mesh.N[t.z];
         // Opposite normals cancel; what is left of them then is rounding error.
         if (glm::dot(n, n) > 1e-8f) point.N = glm::normalize(n);
     }
-    if (mesh.has_uv()) {
-        point.uv = b0 * mesh.uv[t.x] + b1 * mesh.uv[t.y] + b2 * mesh.uv[t.z];
-        const glm::dvec2 uv0(mesh.uv[t.x]);
-        point.dPdu = tangent_along_u(edge1, edge2, glm::dvec2(mesh.uv[t.y]) - uv0,
-                                     glm::dvec2(mesh.uv[t.z]) - uv0);
-    }
-    if (point.dPdu == glm::vec3(0.0f)) point.dPdu = tangent_of(point.N);
+    if (mesh.has_uv()) point.uv = b0 * mesh.uv[t.x] + b1 * mesh.uv[t.y] + b2 * mesh.uv[t.z];
     return point;
+}
+
+glm::vec3 tangent(const Mesh& mesh, const MeshPoint& point) noexcept {
+    glm::vec3 dPdu(0.0f);
+    if (mesh.has_uv()) {
+        const glm::uvec3 t = mesh.triangles[point.triangle];
+        const glm::dvec2 uv0(mesh.uv[t.x]);
+        dPdu = tangent_along_u(edges_of(mesh, t), glm::dvec2(mesh.uv[t.y]) - uv0,
+                               glm::dvec2(mesh.uv[t.z]) - uv0);
+    }
+    return dPdu == glm::vec3(0.0f) ? tangent_eastwards(point.N) : dPdu;
 }
 
 std::string mesh_digest(const Mesh& mesh) {

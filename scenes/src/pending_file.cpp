@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <random>
 
 #include "estara/scenes/program.h"
 
@@ -33,6 +38,69 @@ void make_folder(const fs::path& folder, const std::string& final_path) {
                             code.message()));
 }
 
+/// Files to remove if the program is interrupted. A signal handler may not allocate or lock, so the
+/// names lie in fixed places; a file beyond the last place is only removed by its destructor.
+class Interrupted {
+public:
+    static Interrupted& instance() {
+        static Interrupted all;
+        return all;
+    }
+
+    void add(const std::string& path) noexcept {
+        for (Place& place : m_places) {
+            int empty = 0;
+            if (path.size() + 1 > place.name.size()) return;
+            if (!place.state.compare_exchange_strong(empty, 1)) continue;
+            std::memcpy(place.name.data(), path.c_str(), path.size() + 1);
+            place.state = 2;
+            return;
+        }
+    }
+
+    void remove(const std::string& path) noexcept {
+        for (Place& place : m_places) {
+            if (place.state == 2 && path == place.name.data()) place.state = 0;
+        }
+    }
+
+private:
+    struct Place {
+        std::atomic<int> state{0};  ///< 0 empty, 1 being filled, 2 full
+        std::array<char, 1024> name{};
+    };
+
+    Interrupted() {
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+            // What is ignored (nohup) stays ignored.
+            if (std::signal(signal, &Interrupted::clean_up) == SIG_IGN)
+                std::signal(signal, SIG_IGN);
+        }
+    }
+
+    static void clean_up(int signal) {
+        for (Place& place : instance().m_places) {
+            if (place.state == 2) ::unlink(place.name.data());
+        }
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+
+    std::array<Place, 16> m_places;
+};
+
+/// A name that no other program, here or on another machine of the same disk, has taken.
+int create_beside(const fs::path& folder, const fs::path& path, std::string& name) {
+    std::random_device random;
+    for (int attempt = 0;; ++attempt) {
+        const std::string file = fmt::format(".{}.{:08x}.tmp{}", path.stem().string(), random(),
+                                             path.extension().string());
+        name = (path.has_parent_path() ? folder / file : fs::path(file)).string();
+        const int opened = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (opened >= 0 || errno != EEXIST || attempt == 100) return opened;
+    }
+}
+
 }  // namespace
 
 PendingFile::PendingFile(std::string final_path) : m_final(std::move(final_path)) {
@@ -45,19 +113,18 @@ PendingFile::PendingFile(std::string final_path) : m_final(std::move(final_path)
     }
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     make_folder(folder, m_final);
-    const std::string name =
-        fmt::format(".{}.{}.tmp{}", path.stem().string(), ::getpid(), path.extension().string());
-    m_path = (path.has_parent_path() ? folder / name : fs::path(name)).string();
-    const int file = ::open(m_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int file = create_beside(folder, path, m_path);
     if (file < 0) {
         throw Error(fmt::format("{}: cannot write to the folder {}: {}", m_final, folder.string(),
                                 std::strerror(errno)));
     }
     ::close(file);
+    Interrupted::instance().add(m_path);
 }
 
 PendingFile::~PendingFile() {
     if (!m_committed) ::unlink(m_path.c_str());
+    Interrupted::instance().remove(m_path);
 }
 
 void PendingFile::commit() {
@@ -69,6 +136,34 @@ void PendingFile::commit() {
     // The file is in place; a folder that cannot be flushed (some network disks) is no failure.
     const std::string folder = fs::path(m_final).parent_path().string();
     sync(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    PendingFile file(path);
+    std::ofstream out(file.path(), std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) {
+        throw Error(fmt::format("{}: cannot be written; the disk may be full", path),
+                    ExitStatus::failed);
+    }
+    file.commit();
+}
+
+void refuse_same_file(const std::vector<std::pair<std::string, std::string>>& files) {
+    const auto absolute = [](const std::string& file) {
+        std::error_code code;
+        const fs::path path = fs::weakly_canonical(file, code);
+        return code ? fs::path(file) : path;
+    };
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        for (std::size_t k = i + 1; k < files.size(); ++k) {
+            if (files[i].second.empty() || files[k].second.empty()) continue;
+            if (absolute(files[i].second) != absolute(files[k].second)) continue;
+            throw Error(fmt::format("{} {} and {} {} are the same file", files[i].first,
+                                    files[i].second, files[k].first, files[k].second));
+        }
+    }
 }
 
 }  // namespace estara

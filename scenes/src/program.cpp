@@ -28,6 +28,9 @@ void print(const char* program, const std::string& message) {
 int run_program(const char* program, const std::function<void()>& body) {
     try {
         body();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+            throw Error("the results cannot be written to standard output", ExitStatus::failed);
+        }
         return int(ExitStatus::done);
     } catch (const Error& error) {
         print(program, error.what());

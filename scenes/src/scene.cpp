@@ -106,8 +106,11 @@ int find_camera(const Scene& scene, const std::string& name) {
     if (name.empty()) return 0;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        if (scene.cameras[i].name == name) return int(i);
-        names.push_back(scene.cameras[i].name);
+        const SceneCamera& camera = scene.cameras[i];
+        if (camera.name == name) return int(i);
+        // Blender shows the name of the node, not that of the camera.
+        if (scene.nodes[std::size_t(camera.node)].name == name) return int(i);
+        names.push_back(camera.name);
     }
     throw Error(
         fmt::format("{}: no camera '{}'; the scene has: {}", scene.path, name, list(names)));

@@ -8,10 +8,11 @@ namespace estara {
 
 /// Cobbles in mortar: the paper's Listing 1, on Advanced RenderMan's Voronoi cells (Apodaca & Gritz
 /// 1999). On texture coordinates as published, or solid: the same cells in three dimensions, for
-/// meshes that have none (the solid variant and the default values are ours, SHADERS.md section 2).
+/// meshes that have none (the solid variant and the default values are ours).
 struct Cobblestone {
     static constexpr std::string_view name = "cobblestone";
-    static constexpr std::string_view summary = "cobbles of varying shade in mortar, on uv or solid";
+    static constexpr std::string_view summary =
+        "cobbles of varying shade in mortar, on uv or solid";
 
     static constexpr int automatic = -1, on_uv = 0, solid = 1;
 
@@ -24,17 +25,28 @@ struct Cobblestone {
 
     static constexpr auto params() {
         return std::tuple{
-            Param{"variant", &Cobblestone::variant, Part::bake, Unit::none, -1.0f, 1.0f, "0: on texture coordinates; 1: solid; -1: 0 if the mesh has any, else 1"},
-            Param{"Kd", &Cobblestone::Kd, Part::view, Unit::none, 0.0f, 10.0f, "weight of diffuse light"},
-            Param{"jitter", &Cobblestone::jitter, Part::bake, Unit::none, 0.0f, 1.0f, "how far a cobble strays from the lattice"},
-            Param{"sscale", &Cobblestone::sscale, Part::bake, Unit::none, 0.0f, 1e6f, "cobbles along u (variant 0)"},
-            Param{"tscale", &Cobblestone::tscale, Part::bake, Unit::none, 0.0f, 1e6f, "cobbles along v (variant 0)"},
-            Param{"txtscale", &Cobblestone::txtscale, Part::bake, Unit::per_length, 0.0f, 1e6f, "cobbles per unit of length (variant 1)"},
-            Param{"selfCol", &Cobblestone::selfCol, Part::bake, Unit::color, 0.0f, 1.0f, "twice the colour of the mortar"},
-            Param{"varCol", &Cobblestone::varCol, Part::bake, Unit::color, 0.0f, 0.8f, "colour of a cobble of medium shade; the lightest are 1.25 times that"},
-            Param{"Ka", &Cobblestone::Ka, Part::view, Unit::none, 0.0f, 10.0f, "weight of ambient light"},
-            Param{"Ks", &Cobblestone::Ks, Part::view, Unit::none, 0.0f, 10.0f, "weight of the highlight"},
-            Param{"roughness", &Cobblestone::roughness, Part::view, Unit::none, 0.001f, 1.0f, "width of the highlight"},
+            Param{"variant", &Cobblestone::variant, Part::bake, Unit::none, -1.0f, 1.0f,
+                  "0: on texture coordinates; 1: solid; -1: 0 if the mesh has any, else 1"},
+            Param{"Kd", &Cobblestone::Kd, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of diffuse light"},
+            Param{"jitter", &Cobblestone::jitter, Part::bake, Unit::none, 0.0f, 1.0f,
+                  "how far a cobble strays from the lattice"},
+            Param{"sscale", &Cobblestone::sscale, Part::bake, Unit::none, 0.0f, 1e6f,
+                  "cobbles along u (variant 0)"},
+            Param{"tscale", &Cobblestone::tscale, Part::bake, Unit::none, 0.0f, 1e6f,
+                  "cobbles along v (variant 0)"},
+            Param{"txtscale", &Cobblestone::txtscale, Part::bake, Unit::per_length, 0.0f, 1e6f,
+                  "cobbles per unit of length (variant 1)"},
+            Param{"selfCol", &Cobblestone::selfCol, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "twice the colour of the mortar"},
+            Param{"varCol", &Cobblestone::varCol, Part::bake, Unit::color, 0.0f, 0.8f,
+                  "colour of a cobble of medium shade; the lightest are 1.25 times that"},
+            Param{"Ka", &Cobblestone::Ka, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of ambient light"},
+            Param{"Ks", &Cobblestone::Ks, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of the highlight"},
+            Param{"roughness", &Cobblestone::roughness, Part::view, Unit::none, 0.001f, 1.0f,
+                  "width of the highlight"},
         };
     }
 

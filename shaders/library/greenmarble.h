@@ -6,7 +6,7 @@
 
 namespace estara {
 
-/// Dark green marble with sharp veins (Gritz 1994; mathematics as in SHADERS.md, section 2): a
+/// Dark green marble with sharp veins (Gritz 1994): a
 /// turbulent substrate, veins along the zeros of a warped noise, and a mask that interrupts them.
 /// The dearest of the solid shaders: 29 noises at a filter width of .01.
 struct Greenmarble {
@@ -21,15 +21,24 @@ struct Greenmarble {
 
     static constexpr auto params() {
         return std::tuple{
-            Param{"Ka", &Greenmarble::Ka, Part::view, Unit::none, 0.0f, 10.0f, "weight of ambient light"},
-            Param{"Kd", &Greenmarble::Kd, Part::view, Unit::none, 0.0f, 10.0f, "weight of diffuse light"},
-            Param{"Ks", &Greenmarble::Ks, Part::view, Unit::none, 0.0f, 10.0f, "weight of the highlight"},
-            Param{"roughness", &Greenmarble::roughness, Part::view, Unit::none, 0.001f, 1.0f, "width of the highlight"},
-            Param{"darkcolor", &Greenmarble::darkcolor, Part::bake, Unit::color, 0.0f, 1.0f, "dark colour of the substrate"},
-            Param{"lightcolor", &Greenmarble::lightcolor, Part::bake, Unit::color, 0.0f, 1.0f, "light colour of the substrate"},
-            Param{"veincolor", &Greenmarble::veincolor, Part::bake, Unit::color, 0.0f, 1.0f, "colour of the veins"},
-            Param{"veinfreq", &Greenmarble::veinfreq, Part::bake, Unit::per_length, 0.0f, 1e6f, "how densely veins lie"},
-            Param{"sharpness", &Greenmarble::sharpness, Part::bake, Unit::none, 0.1f, 1000.0f, "how thin veins are"},
+            Param{"Ka", &Greenmarble::Ka, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of ambient light"},
+            Param{"Kd", &Greenmarble::Kd, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of diffuse light"},
+            Param{"Ks", &Greenmarble::Ks, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of the highlight"},
+            Param{"roughness", &Greenmarble::roughness, Part::view, Unit::none, 0.001f, 1.0f,
+                  "width of the highlight"},
+            Param{"darkcolor", &Greenmarble::darkcolor, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "dark colour of the substrate"},
+            Param{"lightcolor", &Greenmarble::lightcolor, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "light colour of the substrate"},
+            Param{"veincolor", &Greenmarble::veincolor, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "colour of the veins"},
+            Param{"veinfreq", &Greenmarble::veinfreq, Part::bake, Unit::per_length, 0.0f, 1e6f,
+                  "how densely veins lie"},
+            Param{"sharpness", &Greenmarble::sharpness, Part::bake, Unit::none, 0.1f, 1000.0f,
+                  "how thin veins are"},
         };
     }
 
@@ -60,7 +69,8 @@ struct Greenmarble {
 #pragma GCC unroll 3
         for (int k = 0; k < 3; ++k) {
             const float ridge = 1.0f - std::fabs(snoise(warped * float(1 << k)));
-            const float vein = power(smoothstep(0.8f, 1.0f, ridge), sharpness) * (1.0f / float(1 << k));
+            const float vein =
+                power(smoothstep(0.8f, 1.0f, ridge), sharpness) * (1.0f / float(1 << k));
             veins += (1.0f - veins) * vein;
         }
         const float mask =

@@ -8,7 +8,8 @@ namespace estara {
 /// RSL's standard plastic: one colour and a highlight. What objects without a shader wear.
 struct Plastic {
     static constexpr std::string_view name = "plastic";
-    static constexpr std::string_view summary = "one colour with a highlight (objects without a shader)";
+    static constexpr std::string_view summary =
+        "one colour with a highlight (objects without a shader)";
 
     float Ka = 1.0f, Kd = 0.5f, Ks = 0.5f, roughness = 0.1f;
     glm::vec3 specularcolor{1.0f};
@@ -16,11 +17,16 @@ struct Plastic {
 
     static constexpr auto params() {
         return std::tuple{
-            Param{"Ka", &Plastic::Ka, Part::view, Unit::none, 0.0f, 10.0f, "weight of ambient light"},
-            Param{"Kd", &Plastic::Kd, Part::view, Unit::none, 0.0f, 10.0f, "weight of diffuse light"},
-            Param{"Ks", &Plastic::Ks, Part::view, Unit::none, 0.0f, 10.0f, "weight of the highlight"},
-            Param{"roughness", &Plastic::roughness, Part::view, Unit::none, 0.001f, 1.0f, "width of the highlight"},
-            Param{"specularcolor", &Plastic::specularcolor, Part::view, Unit::color, 0.0f, 10.0f, "colour of the highlight"},
+            Param{"Ka", &Plastic::Ka, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of ambient light"},
+            Param{"Kd", &Plastic::Kd, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of diffuse light"},
+            Param{"Ks", &Plastic::Ks, Part::view, Unit::none, 0.0f, 10.0f,
+                  "weight of the highlight"},
+            Param{"roughness", &Plastic::roughness, Part::view, Unit::none, 0.001f, 1.0f,
+                  "width of the highlight"},
+            Param{"specularcolor", &Plastic::specularcolor, Part::view, Unit::color, 0.0f, 10.0f,
+                  "colour of the highlight"},
             Param{"Cs", &Plastic::Cs, Part::bake, Unit::color, 0.0f, 1.0f, "colour of the surface"},
         };
     }

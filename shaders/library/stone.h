@@ -8,8 +8,9 @@ namespace estara {
 
 /// Speckled stone: one noise, quantised into a few shades between two colours.
 ///
-/// The look and the parameters of SGI's and Pixar's stone (their public manual page); the mathematics
-/// is SHADERS.md's, section 2. Discontinuous where a shade ends.
+/// The look and the parameters of SGI's and Pixar's stone (their public manual page); the
+/// formula is ours: t = noise(P / scale), rounded to nshades steps. Discontinuous where a shade
+/// ends.
 struct Stone {
     static constexpr std::string_view name = "stone";
     static constexpr std::string_view summary = "speckles in a few shades between two colours";
@@ -27,12 +28,18 @@ struct Stone {
             Param{"Ks", &Stone::Ks, Part::view, Unit::none, 0.0f, 10.0f, "weight of the highlight"},
             Param{"Kd", &Stone::Kd, Part::view, Unit::none, 0.0f, 10.0f, "weight of diffuse light"},
             Param{"Ka", &Stone::Ka, Part::view, Unit::none, 0.0f, 10.0f, "weight of ambient light"},
-            Param{"roughness", &Stone::roughness, Part::view, Unit::none, 0.001f, 1.0f, "width of the highlight"},
-            Param{"scale", &Stone::scale, Part::bake, Unit::length, 1e-6f, 1e6f, "size of a speckle"},
-            Param{"nshades", &Stone::nshades, Part::bake, Unit::none, 1.0f, 256.0f, "number of steps between the two colours"},
-            Param{"exponent", &Stone::exponent, Part::bake, Unit::none, 0.01f, 100.0f, "above 1 favours graincolor, below 1 Cs"},
-            Param{"specularcolor", &Stone::specularcolor, Part::view, Unit::color, 0.0f, 10.0f, "colour of the highlight"},
-            Param{"graincolor", &Stone::graincolor, Part::bake, Unit::color, 0.0f, 1.0f, "colour of the grain"},
+            Param{"roughness", &Stone::roughness, Part::view, Unit::none, 0.001f, 1.0f,
+                  "width of the highlight"},
+            Param{"scale", &Stone::scale, Part::bake, Unit::length, 1e-6f, 1e6f,
+                  "size of a speckle"},
+            Param{"nshades", &Stone::nshades, Part::bake, Unit::none, 1.0f, 256.0f,
+                  "number of steps between the two colours"},
+            Param{"exponent", &Stone::exponent, Part::bake, Unit::none, 0.01f, 100.0f,
+                  "above 1 favours graincolor, below 1 Cs"},
+            Param{"specularcolor", &Stone::specularcolor, Part::view, Unit::color, 0.0f, 10.0f,
+                  "colour of the highlight"},
+            Param{"graincolor", &Stone::graincolor, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "colour of the grain"},
             Param{"Cs", &Stone::Cs, Part::bake, Unit::color, 0.0f, 1.0f, "colour of the surface"},
         };
     }

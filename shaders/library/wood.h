@@ -7,7 +7,7 @@
 namespace estara {
 
 /// Growth rings around the object's x axis, after the RenderMan Companion's listing 16.15 (Upstill
-/// 1990; mathematics as in SHADERS.md, section 2). Dark rings shine more than light wood, so the
+/// 1990; the code is ours). Dark rings shine more than light wood, so the
 /// weight of the highlight is a channel beside the colour.
 struct Wood {
     static constexpr std::string_view name = "wood";
@@ -20,13 +20,17 @@ struct Wood {
 
     static constexpr auto params() {
         return std::tuple{
-            Param{"ringscale", &Wood::ringscale, Part::bake, Unit::per_length, 0.0f, 1e6f, "rings per unit of radius"},
-            Param{"lightwood", &Wood::lightwood, Part::bake, Unit::color, 0.0f, 1.0f, "colour between the rings"},
-            Param{"darkwood", &Wood::darkwood, Part::bake, Unit::color, 0.0f, 1.0f, "colour of the rings"},
+            Param{"ringscale", &Wood::ringscale, Part::bake, Unit::per_length, 0.0f, 1e6f,
+                  "rings per unit of radius"},
+            Param{"lightwood", &Wood::lightwood, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "colour between the rings"},
+            Param{"darkwood", &Wood::darkwood, Part::bake, Unit::color, 0.0f, 1.0f,
+                  "colour of the rings"},
             Param{"Ka", &Wood::Ka, Part::view, Unit::none, 0.0f, 10.0f, "weight of ambient light"},
             Param{"Kd", &Wood::Kd, Part::view, Unit::none, 0.0f, 10.0f, "weight of diffuse light"},
             Param{"Ks", &Wood::Ks, Part::view, Unit::none, 0.0f, 10.0f, "weight of the highlight"},
-            Param{"roughness", &Wood::roughness, Part::view, Unit::none, 0.001f, 1.0f, "width of the highlight"},
+            Param{"roughness", &Wood::roughness, Part::view, Unit::none, 0.001f, 1.0f,
+                  "width of the highlight"},
         };
     }
 
@@ -36,7 +40,8 @@ struct Wood {
     };
     static constexpr auto channels() {
         return std::tuple{Channel{"color", &Baked::color, "diffuse reflectance, linear Rec. 709"},
-                          Channel{"specular", &Baked::specular, "weight of the highlight: .7 between the rings, 1 on one"}};
+                          Channel{"specular", &Baked::specular,
+                                  "weight of the highlight: .7 between the rings, 1 on one"}};
     }
 
     ESTARA_KERNEL Baked bake(const SurfacePoint& x) const noexcept {

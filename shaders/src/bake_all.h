@@ -7,8 +7,8 @@
 
 namespace estara::detail {
 
-/// Writes a record to column i of planes, channel by channel. (Not by copying its bytes: that becomes
-/// one 16-byte move, which keeps the loop scalar.)
+/// Writes a record to column i of planes, channel by channel. (Not by copying its bytes: that
+/// becomes one 16-byte move, which keeps the loop scalar.)
 template <class S, std::size_t channel = 0, int plane = 0>
 ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i) noexcept {
     constexpr auto channels = S::channels();
@@ -93,7 +93,8 @@ template <class S>
 template <class S>
 BakeFunction<S> bake_function([[maybe_unused]] InstructionSet limit) noexcept {
 #ifdef ESTARA_DISPATCH
-    if (limit >= InstructionSet::avx512 && __builtin_cpu_supports("x86-64-v4")) return bake_avx512<S>;
+    if (limit >= InstructionSet::avx512 && __builtin_cpu_supports("x86-64-v4"))
+        return bake_avx512<S>;
     if (limit >= InstructionSet::avx2 && __builtin_cpu_supports("x86-64-v3")) return bake_avx2<S>;
     if (limit >= InstructionSet::sse42 && __builtin_cpu_supports("x86-64-v2")) return bake_sse42<S>;
 #endif

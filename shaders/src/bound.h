@@ -17,7 +17,8 @@ template <class S>
 using BakeFunction = void (*)(const S&, const SurfaceBatch&, float*) noexcept;
 
 /// The widest version of bake over a batch that this machine runs, but none wider than `limit`.
-/// Defined in bake_all.h and compiled once per shader (bound.cpp.in), because it is slow to compile.
+/// Defined in bake_all.h and compiled once per shader (bound.cpp.in), because it is slow to
+/// compile.
 template <class S>
 BakeFunction<S> bake_function(InstructionSet limit) noexcept;
 
@@ -48,9 +49,12 @@ inline void assign(glm::vec3& member, const glm::vec3& v) { member = v; }
 
 template <class T>
 constexpr ValueType type_of() {
-    if constexpr (std::is_same_v<T, float>) return ValueType::number;
-    else if constexpr (std::is_same_v<T, int>) return ValueType::integer;
-    else return ValueType::color;
+    if constexpr (std::is_same_v<T, float>)
+        return ValueType::number;
+    else if constexpr (std::is_same_v<T, int>)
+        return ValueType::integer;
+    else
+        return ValueType::color;
 }
 
 template <class S>
@@ -61,14 +65,17 @@ ShaderInfo make_info() {
     std::apply(
         [&](const auto&... p) {
             (info.params.push_back({p.name, type_of<std::decay_t<decltype(defaults.*p.member)>>(),
-                                    as_vec3(defaults.*p.member), p.min, p.max, p.unit, p.part, p.help}),
+                                    as_vec3(defaults.*p.member), p.min, p.max, p.unit, p.part,
+                                    p.help}),
              ...);
         },
         S::params());
     const typename S::Baked record{};
     std::apply(
         [&](const auto&... c) {
-            (info.channels.push_back({c.name, int(sizeof(record.*c.member) / sizeof(float)), c.help}), ...);
+            (info.channels.push_back(
+                 {c.name, int(sizeof(record.*c.member) / sizeof(float)), c.help}),
+             ...);
         },
         S::channels());
     return info;
@@ -77,10 +84,12 @@ ShaderInfo make_info() {
 template <class S>
 class Bound final : public BoundShader {
 public:
-    Bound(const ShaderInfo& info, const std::vector<glm::vec3>& values, bool has_uv, InstructionSet limit)
+    Bound(const ShaderInfo& info, const std::vector<glm::vec3>& values, bool has_uv,
+          InstructionSet limit)
         : m_info(info), m_bake(bake_function<S>(limit)) {
         std::size_t i = 0;
-        std::apply([&](const auto&... p) { (assign(m_shader.*p.member, values[i++]), ...); }, S::params());
+        std::apply([&](const auto&... p) { (assign(m_shader.*p.member, values[i++]), ...); },
+                   S::params());
         if constexpr (requires { m_shader.resolved(has_uv); }) m_shader = m_shader.resolved(has_uv);
     }
 
@@ -89,7 +98,8 @@ public:
 
     std::vector<glm::vec3> values() const override {
         std::vector<glm::vec3> v;
-        std::apply([&](const auto&... p) { (v.push_back(as_vec3(m_shader.*p.member)), ...); }, S::params());
+        std::apply([&](const auto&... p) { (v.push_back(as_vec3(m_shader.*p.member)), ...); },
+                   S::params());
         return v;
     }
 
@@ -97,7 +107,8 @@ public:
         m_bake(m_shader, in, planes);
     }
 
-    void view(const float* planes, std::span<const Seen> seen, glm::vec3* Ci) const noexcept override {
+    void view(const float* planes, std::span<const Seen> seen,
+              glm::vec3* Ci) const noexcept override {
         typename S::Baked baked;
         for (std::size_t i = 0; i < seen.size(); ++i) {
             load<S>(baked, planes, i);

@@ -20,7 +20,8 @@ namespace {
 /// Raised when a shader's or a building block's mathematics changes: grids baked before are stale.
 constexpr std::string_view shaders_version = "1";
 
-using Binder = BoundShaderPtr (*)(const ShaderInfo&, const std::vector<glm::vec3>&, bool, InstructionSet);
+using Binder = BoundShaderPtr (*)(const ShaderInfo&, const std::vector<glm::vec3>&, bool,
+                                  InstructionSet);
 
 struct Registry {
     std::vector<ShaderInfo> infos;
@@ -30,8 +31,8 @@ struct Registry {
 template <class S>
 void add(Registry& registry) {
     registry.infos.push_back(detail::make_info<S>());
-    registry.binders.push_back([](const ShaderInfo& info, const std::vector<glm::vec3>& values, bool has_uv,
-                                  InstructionSet limit) -> BoundShaderPtr {
+    registry.binders.push_back([](const ShaderInfo& info, const std::vector<glm::vec3>& values,
+                                  bool has_uv, InstructionSet limit) -> BoundShaderPtr {
         return std::make_shared<detail::Bound<S>>(info, values, has_uv, limit);
     });
 }
@@ -66,7 +67,8 @@ std::string join(std::span<const std::string_view> words) {
 std::string quoted(std::string_view word) { return "'" + std::string(word) + "'"; }
 
 /// "did you mean 'x'? it has: a, b, c".
-std::string suggestion(std::string_view word, std::span<const std::string_view> known, const char* what) {
+std::string suggestion(std::string_view word, std::span<const std::string_view> known,
+                       const char* what) {
     const std::string_view near = nearest_word(word, known);
     std::string hint = near.empty() ? "" : "did you mean " + quoted(near) + "? ";
     return hint + what + ": " + join(known);
@@ -77,7 +79,8 @@ std::string value_problem(const ParamInfo& param, const Setting& setting) {
     const std::string name = quoted(param.name);
     const bool color = param.type == ValueType::color;
     if (setting.value.size() != 1 && !(color && setting.value.size() == 3)) {
-        return name + (color ? " is a colour: give 3 numbers, or 1 for a grey" : " is one number, not ") +
+        return name +
+               (color ? " is a colour: give 3 numbers, or 1 for a grey" : " is one number, not ") +
                (color ? "" : std::to_string(setting.value.size()));
     }
     for (const float v : setting.value) {
@@ -111,10 +114,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view to_string(Unit unit) noexcept {
     switch (unit) {
-        case Unit::none: return "";
-        case Unit::per_length: return "1/length";
-        case Unit::length: return "length";
-        case Unit::color: return "linear Rec. 709";
+        case Unit::none:
+            return "";
+        case Unit::per_length:
+            return "1/length";
+        case Unit::length:
+            return "length";
+        case Unit::color:
+            return "linear Rec. 709";
     }
     return "";
 }
@@ -133,7 +140,8 @@ std::span<const ShaderInfo> all_shaders() { return registry().infos; }
 
 const ShaderInfo* find_shader(std::string_view name) {
     const auto& infos = registry().infos;
-    const auto at = std::find_if(infos.begin(), infos.end(), [&](const ShaderInfo& i) { return i.name == name; });
+    const auto at = std::find_if(infos.begin(), infos.end(),
+                                 [&](const ShaderInfo& i) { return i.name == name; });
     return at == infos.end() ? nullptr : &*at;
 }
 
@@ -170,13 +178,15 @@ BindResult bind_shader(std::string_view name, std::span<const Setting> settings,
                                      [&](const ParamInfo& p) { return p.name == setting.name; });
         const std::string shader = "shader " + quoted(name);
         if (at == info->params.end()) {
-            result.problems.push_back({setting.name, shader + " has no parameter " + quoted(setting.name),
+            result.problems.push_back({setting.name,
+                                       shader + " has no parameter " + quoted(setting.name),
                                        suggestion(setting.name, names_of(info->params), "it has")});
             continue;
         }
         const auto index = std::size_t(at - info->params.begin());
         if (given[index]) {
-            result.problems.push_back({setting.name, shader + ": " + quoted(setting.name) + " is set twice", ""});
+            result.problems.push_back(
+                {setting.name, shader + ": " + quoted(setting.name) + " is set twice", ""});
             continue;
         }
         given[index] = true;
@@ -193,8 +203,9 @@ BindResult bind_shader(std::string_view name, std::span<const Setting> settings,
     const auto number = std::size_t(info - registry().infos.data());
     BoundShaderPtr shader = registry().binders[number](*info, values, has_uv, limit);
     if (shader->domain() == Domain::surface && !has_uv) {
-        result.problems.push_back({"", "shader " + quoted(name) + " is set on texture coordinates, and the mesh has none",
-                                   "add some, or use its solid variant"});
+        result.problems.push_back(
+            {"", "shader " + quoted(name) + " is set on texture coordinates, and the mesh has none",
+             "add some, or use its solid variant"});
         return result;
     }
     result.shader = std::move(shader);
@@ -225,8 +236,9 @@ std::string describe_values(const BoundShader& shader) {
 }
 
 std::string shader_digest(const BoundShader& shader) {
-    const std::string text = std::string(shaders_version) + " " + std::string(shader.info().name) + " " +
-                             list_values(shader, [](const ParamInfo& p) { return p.part == Part::bake; });
+    const std::string text =
+        std::string(shaders_version) + " " + std::string(shader.info().name) + " " +
+        list_values(shader, [](const ParamInfo& p) { return p.part == Part::bake; });
     std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, 64 bits: a checksum, not a secret
     for (const char c : text) hash = (hash ^ std::uint8_t(c)) * 0x100000001b3u;
     std::array<char, 17> digits{};

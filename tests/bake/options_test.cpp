@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "estara/bake/run.h"
 #include "estara/scenes/error.h"
 
@@ -30,9 +33,33 @@ std::string failure(const std::vector<const char*>& words) {
 }
 
 TEST(Options, ReadWhatHelpPromises) {
-    const Options o = parsed({"wood", "a.glb", "-o", "b.vdb", "--param", "ringscale=3", "--param", "lightwood=.1,.2,.3",
-                              "--object", "v*", "--object", "w", "--voxel-size", "0.5", "--frames", "3-9x2", "--resolution",
-                              "320x200", "--max-memory", "2G", "--compression", "none", "--half", "--threads", "3", "--seed", "9"});
+    const Options o = parsed({"wood",
+                              "a.glb",
+                              "-o",
+                              "b.vdb",
+                              "--param",
+                              "ringscale=3",
+                              "--param",
+                              "lightwood=.1,.2,.3",
+                              "--object",
+                              "v*",
+                              "--object",
+                              "w",
+                              "--voxel-size",
+                              "0.5",
+                              "--frames",
+                              "3-9x2",
+                              "--resolution",
+                              "320x200",
+                              "--max-memory",
+                              "2G",
+                              "--compression",
+                              "none",
+                              "--half",
+                              "--threads",
+                              "3",
+                              "--seed",
+                              "9"});
     EXPECT_EQ(o.shader, "wood");
     EXPECT_EQ(o.scene, "a.glb");
     EXPECT_EQ(o.output, "b.vdb");
@@ -52,30 +79,49 @@ TEST(Options, ReadWhatHelpPromises) {
 TEST(Options, HelpNamesEveryOptionOfTheDesign) {
     std::string help;
     (void)parsed({"--help"}, &help);
-    for (const char* option : {"--param", "--object", "--voxel-size", "--max-error", "--frames", "--resolution", "--max-memory",
-                               "--compression", "--half", "--dry-run", "--stats", "--threads", "--progress", "--seed",
-                               "--list-shaders", "--describe", "-o,--output", "Examples:"}) {
+    for (const char* option :
+         {"--param", "--object", "--voxel-size", "--max-error", "--frames", "--resolution",
+          "--max-memory", "--compression", "--half", "--dry-run", "--stats", "--threads",
+          "--progress", "--seed", "--list-shaders", "--describe", "-o,--output", "Examples:"}) {
         EXPECT_THAT(help, testing::HasSubstr(option));
     }
 }
 
 TEST(Options, AnswerMistakesInOneLine) {
-    EXPECT_EQ(failure({}), "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb; --help explains");
-    EXPECT_EQ(failure({"wood", "a.glb"}), "where to? give -o FILE.vdb (or --dry-run to see what a bake would cost)");
-    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.txt"}), "a.txt: grids are written as .vdb; give the name that ending");
+    EXPECT_EQ(failure({}),
+              "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb; --help explains");
+    EXPECT_EQ(failure({"wood", "a.glb"}),
+              "where to? give -o FILE.vdb (or --dry-run to see what a bake would cost)");
+    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.txt"}),
+              "a.txt: grids are written as .vdb; give the name that ending");
     EXPECT_EQ(failure({"wodo", "a.glb", "-o", "a.vdb"}),
               "no shader 'wodo'; there are: wood, stone, cobblestone, greenmarble, plastic");
     EXPECT_EQ(failure({"woood", "a.glb", "-o", "a.vdb"}),
-              "no shader 'woood'; did you mean 'wood'? there are: wood, stone, cobblestone, greenmarble, plastic");
+              "no shader 'woood'; did you mean 'wood'? there are: wood, stone, cobblestone, "
+              "greenmarble, plastic");
     EXPECT_EQ(failure({"--describe", "ston"}),
-              "no shader 'ston'; did you mean 'stone'? there are: wood, stone, cobblestone, greenmarble, plastic");
-    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.vdb", "--voxel-size", "1", "--max-error", "1"}),
-              "--voxel-size and --max-error exclude each other: one sets the voxel, the other finds it");
-    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.vdb", "--voxel-size", "-1"}), "--voxel-size -1: must be above 0");
-    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.vdb", "--max-error", "nan"}), "--max-error nan: must be above 0");
+              "no shader 'ston'; did you mean 'stone'? there are: wood, stone, cobblestone, "
+              "greenmarble, plastic");
+    EXPECT_EQ(
+        failure({"wood", "a.glb", "-o", "a.vdb", "--voxel-size", "1", "--max-error", "1"}),
+        "--voxel-size and --max-error exclude each other: one sets the voxel, the other finds it");
+    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.vdb", "--voxel-size", "-1"}),
+              "--voxel-size -1: must be above 0");
+    EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.vdb", "--max-error", "nan"}),
+              "--max-error nan: must be above 0");
     EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.vdb", "--compression", "lzma"}),
               "--compression: no 'lzma'; there are: zip, blosc, none");
-    EXPECT_THAT(failure({"wood", "a.glb", "-o", "a.vdb", "--voxelsize", "1"}), testing::HasSubstr("--voxelsize"));
+    EXPECT_THAT(failure({"wood", "a.glb", "-o", "a.vdb", "--voxelsize", "1"}),
+                testing::HasSubstr("--voxelsize"));
+}
+
+TEST(Options, ListTheShadersAsTheReadmeDoes) {
+    std::ifstream file(ESTARA_README);
+    const std::string readme{std::istreambuf_iterator<char>(file), {}};
+    std::string table;
+    run(parsed({"--list-shaders", "--markdown"}),
+        {[&](const std::string& text) { table = text; }, [](const std::string&) {}});
+    EXPECT_THAT(readme, testing::HasSubstr("<!-- shaders -->\n" + table + "<!-- /shaders -->"));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ inline Mesh sphere(int n, float radius, const glm::vec3& center = glm::vec3(0.0f
             // The last column repeats the first exactly, so that the seam is closed.
             const float phi = std::numbers::pi_v<float> * float(j % (2 * n)) / float(n);
             const float ring = i == 0 || i == n ? 0.0f : std::sin(theta);
-            mesh.P.push_back(center + radius * glm::vec3(ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)));
+            mesh.P.push_back(center + radius * glm::vec3(ring * std::cos(phi), std::cos(theta),
+                                                         ring * std::sin(phi)));
             mesh.uv.emplace_back(float(j) / float(2 * n), float(i) / float(n));
         }
     }

@@ -48,7 +48,7 @@ void expect_like_openvdb(const TextureGrid& grid, const Sphere& sphere, int coun
 }
 
 TEST(BrickPyramid, AgreesWithOpenVdbOnEveryLevel) {
-    expect_like_openvdb(complete_grid("", 0.02), {}, 100'000);
+    expect_like_openvdb(complete_grid("", 0.02), {}, 1'000'000);
 }
 
 TEST(BrickPyramid, AgreesWithOpenVdbForAnyNumberOfFloats) {

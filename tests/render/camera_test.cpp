@@ -13,17 +13,19 @@ const PinholePose front{{1.0f, 2.0f, 3.0f}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 0.
 
 TEST(Camera, ViewDirectionIsUnitAndTowardsTheEye) {
     const Camera camera(front, 64, 48);
-    for (const glm::vec3& P : {glm::vec3(0.0f), glm::vec3(1e30f, 0.0f, 0.0f),
-                               glm::vec3(1.0f, 2.0f, 3.00001f), glm::vec3(-5.0f, 7.0f, -100.0f)}) {
-        const glm::vec3 V = camera.view_direction(P).vec();
+    for (const glm::vec3& P :
+         {glm::vec3(0.0f), glm::vec3(1e30f, 0.0f, 0.0f), glm::vec3(1e-30f, 2.0f, 3.0f),
+          glm::vec3(1.0f, 2.0f, 3.00001f), glm::vec3(-5.0f, 7.0f, -100.0f)}) {
+        const glm::vec3 V = camera.sight(P).V.vec();
         EXPECT_NEAR(glm::length(V), 1.0f, 1e-6f);
         const glm::dvec3 to_eye = glm::dvec3(front.eye) - glm::dvec3(P);
         EXPECT_NEAR(glm::dot(glm::dvec3(V), glm::normalize(to_eye)), 1.0, 1e-6);
+        EXPECT_FLOAT_EQ(camera.sight(P).distance, float(glm::length(to_eye)));
     }
 }
 
 TEST(Camera, ViewDirectionAtTheEyeIsBackwards) {
-    EXPECT_EQ(Camera(front, 64, 48).view_direction(front.eye).vec(), glm::vec3(0, 0, 1));
+    EXPECT_EQ(Camera(front, 64, 48).sight(front.eye).V.vec(), glm::vec3(0, 0, 1));
 }
 
 TEST(Camera, RayThroughTheMiddleGoesForward) {

@@ -42,7 +42,7 @@ TEST(Options, AreReadAsWritten) {
                "depth",     "--frames", "3-9x2",      "--resolution", "32x16",       "--spp",
                "7",         "--camera", "side",       "--exposure",   "-1.5",        "--ambient",
                "1,0.5,0",   "--shader", "wood",       "--param",      "ringscale=3", "--resume",
-               "--compare", "direct",   "--strategy", "direct",       "--seed",      "5",
+               "--compare", "direct",   "--strategy", "grid",         "--seed",      "5",
                "--threads", "2",        "--progress", "none"});
     EXPECT_EQ(options.scene, "a.glb");
     EXPECT_EQ(options.grids, (std::vector<std::string>{"a.vdb", "b.vdb"}));
@@ -59,7 +59,7 @@ TEST(Options, AreReadAsWritten) {
     EXPECT_EQ(options.shader, "wood");
     EXPECT_EQ(options.params.at(0).name, "ringscale");
     EXPECT_TRUE(options.resume && options.compare_direct);
-    EXPECT_EQ(options.strategy, Strategy::direct);
+    EXPECT_EQ(options.strategy, Strategy::grid);
     EXPECT_EQ(options.frame.seed, 5u);
     EXPECT_EQ(options.threads, 2);
     EXPECT_EQ(options.progress, ProgressStyle::none);
@@ -85,11 +85,18 @@ TEST(Options, StrategiesNotBuiltYetSaySo) {
 TEST(Options, WrongValuesSayWhatThereIs) {
     EXPECT_EQ(error_with({"--strategy", "grd"}), "--strategy: no 'grd'; there are: grid, direct");
     EXPECT_EQ(error_with({"--compare", "grid"}), "--compare: no 'grid'; there is: direct");
+    EXPECT_EQ(error_with({"--compare", "direct", "--strategy", "direct"}),
+              "--compare direct needs another strategy than direct to compare it with");
+    EXPECT_EQ(error_with({"--window", "5"}),
+              "--cache-memory and --window belong to strategy 'cache', which is not built yet");
+    EXPECT_EQ(error_with({"--ambient=-1,0,0"}), "--ambient -1,0,0: must not be negative");
+    EXPECT_EQ(error_with({"--stats", "same.json", "--report", "./same.json"}),
+              "--stats same.json and --report ./same.json are the same file");
     EXPECT_EQ(error_with({"--aov", "normal"}),
               "--aov: no 'normal'; there are: albedo, N, P, depth");
     EXPECT_EQ(error_with({"--spp", "0"}), "--spp 0: must be from 1 to 65536");
-    EXPECT_EQ(error_with({"--fps", "0"}), "--fps 0: must be more than 0");
-    EXPECT_EQ(error_with({"--fps", "nan"}), "--fps nan: must be more than 0");
+    EXPECT_EQ(error_with({"--fps", "0"}), "--fps 0: must be above 0");
+    EXPECT_EQ(error_with({"--fps", "nan"}), "--fps nan: must be above 0");
     EXPECT_EQ(error_with({"--exposure", "nan"}), "--exposure nan: must be from -100 to 100");
     EXPECT_EQ(error_with({"--threads", "-1"}), "--threads -1: must be from 0 to 4096");
     EXPECT_EQ(error_with({"-o", "#.tif"}), "-o #.tif: the name must end in .exr or .png");
@@ -99,8 +106,12 @@ TEST(Options, WrongValuesSayWhatThereIs) {
 }
 
 TEST(Options, UnknownOnesAndMissingOnesPointToHelp) {
-    EXPECT_EQ(error_with({"--gird"}),
-              "The following argument was not expected: --gird; --help lists the options");
+    EXPECT_EQ(error_with({"--gridz", "a.vdb"}),
+              "no option --gridz (did you mean --grids?); --help lists the options");
+    EXPECT_EQ(error_with({"--colour"}), "no option --colour; --help lists the options");
+    EXPECT_EQ(error_with({"b.glb"}), "one word too many: 'b.glb'; --help lists the options");
+    EXPECT_EQ(error_with({"--spp", "many"}),
+              "--spp = many: not a number in its range; --help lists the options");
     EXPECT_EQ(error_of([] {
                   parse({"-o", "#.exr"});
               }),

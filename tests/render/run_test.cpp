@@ -91,19 +91,32 @@ TEST(Run, ResumesWithTheFramesThatAreMissing) {
     run_quietly(options);
     const std::string third = test::text_of(folder / "3.exr");
     std::filesystem::remove(folder / "2.png");
-    std::ofstream(folder / "1.exr") << "untouched";
+    std::filesystem::copy_file(folder / "3.exr", folder / "1.exr",
+                               std::filesystem::copy_options::overwrite_existing);
     options.resume = true;
     const RunRecord record = run_quietly(options);
     ASSERT_EQ(record.frames.size(), 1u);
     EXPECT_EQ(record.frames[0].frame, 2);
     EXPECT_EQ(record.skipped, 2);
     EXPECT_TRUE(std::filesystem::exists(folder / "2.png"));
-    EXPECT_EQ(test::text_of(folder / "1.exr"), "untouched");
+    EXPECT_EQ(test::text_of(folder / "1.exr"), third);  // untouched
     EXPECT_EQ(test::text_of(folder / "3.exr"), third);
 
     const RunRecord nothing = run_quietly(options);
     EXPECT_EQ(result_line(nothing), "0 frames -> " + (folder / "#.exr") + ", " +
                                         (folder / "#.png") + ", 3 frames already there");
+}
+
+TEST(Run, DoesNotTakeABrokenOrASmallerImageForDone) {
+    const Folder folder;
+    Options options = small(folder / "#.exr");
+    options.frames = {1, 2, 1};
+    run_quietly(options);
+    std::ofstream(folder / "1.exr") << "";
+    options.resume = true;
+    EXPECT_EQ(run_quietly(options).frames.size(), 1u);
+    options.frame.width += 1;
+    EXPECT_EQ(run_quietly(options).frames.size(), 2u);
 }
 
 TEST(Run, LeavesNoTemporaryFile) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estara/scenes/offset.h"
 #include "estara/scenes/ray_scene.h"
 #include "ray_scenes.h"
 
@@ -72,17 +73,17 @@ Start random_start(const Leaving& from, Random& random) {
 
 double ulp(double x) { return std::ldexp(1.0, std::ilogb(std::max(x, 1e-30)) - 23); }
 
-TEST(OffsetFromSurface, NeverLetsAConvexObjectShadowItself) {
+TEST(SurfaceOffset, NeverLetsAConvexObjectShadowItself) {
     for (const Leaving& from : surfaces()) {
         SCOPED_TRACE(from.what);
         const Scene scene = scene_of({from.mesh}, {from.world_from_object});
         const RayScene rays(scene);
+        const SurfaceOffset offset(from.world_from_object);
         Random random;
         std::vector<Ray> some, without;
         for (int i = 0; i < points; ++i) {
             const Start s = random_start(from, random);
-            const glm::vec3 origin =
-                offset_from_surface(s.P, s.N, from.world_from_object, s.P_object);
+            const glm::vec3 origin = offset.from(s.P, s.N, s.P_object);
             constexpr float inf = std::numeric_limits<float>::infinity();
             some.push_back({origin, s.direction, 0.0f, inf});
             without.push_back({s.P, s.direction, 0.0f, inf});
@@ -95,16 +96,16 @@ TEST(OffsetFromSurface, NeverLetsAConvexObjectShadowItself) {
     }
 }
 
-TEST(OffsetFromSurface, StaysWithinSixtyFourUlpsOfTheLargestCoordinate) {
+TEST(SurfaceOffset, StaysWithinSixtyFourUlpsOfTheLargestCoordinate) {
     for (const Leaving& from : surfaces()) {
         SCOPED_TRACE(from.what);
+        const SurfaceOffset offset(from.world_from_object);
         Random random;
         double largest = 0.0;
         for (int i = 0; i < points; ++i) {
             const Start s = random_start(from, random);
             const glm::dvec3 moved =
-                glm::dvec3(offset_from_surface(s.P, s.N, from.world_from_object, s.P_object)) -
-                glm::dvec3(s.P);
+                glm::dvec3(offset.from(s.P, s.N, s.P_object)) - glm::dvec3(s.P);
             const glm::vec3 size = glm::abs(s.P);
             const double unit = ulp(std::max({size.x, size.y, size.z}));
             largest = std::max(largest, glm::length(moved) / unit);
@@ -114,19 +115,19 @@ TEST(OffsetFromSurface, StaysWithinSixtyFourUlpsOfTheLargestCoordinate) {
     }
 }
 
-TEST(OffsetFromSurface, GoesToTheSideOfTheNormal) {
+TEST(SurfaceOffset, GoesToTheSideOfTheNormal) {
     const glm::mat4 m = transform({5, 6, 7}, slanted(), glm::vec3(2.0f));
     const glm::vec3 P(m * glm::vec4(1, 2, 3, 1));
     Random random;
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 N(random.direction());
-        EXPECT_GT(glm::dot(offset_from_surface(P, N, m, {1, 2, 3}) - P, N), 0.0f);
+        EXPECT_GT(glm::dot(SurfaceOffset(m).from(P, N, {1, 2, 3}) - P, N), 0.0f);
     }
 }
 
-TEST(OffsetFromSurface, LeavesAPointOfAFlattenedObjectWhereItIs) {
+TEST(SurfaceOffset, LeavesAPointOfAFlattenedObjectWhereItIs) {
     const glm::vec3 P(1, 2, 3), N(0, 0, 1);
-    EXPECT_EQ(offset_from_surface(P, N, glm::mat4(0.0f), {1, 1, 1}), P);
+    EXPECT_EQ(SurfaceOffset(glm::mat4(0.0f)).from(P, N, {1, 1, 1}), P);
 }
 
 }  // namespace

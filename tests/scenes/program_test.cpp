@@ -1,7 +1,10 @@
 // Exit status, progress and files put in place.
 #include "estara/scenes/program.h"
 
+#include <gmock/gmock.h>
 #include <sys/stat.h>
+
+#include <csignal>
 
 #include <thread>
 
@@ -102,7 +105,7 @@ protected:
 TEST_F(Pending, AppearsUnderItsNameWhenCommitted) {
     write_file("a.exr", "old");
     PendingFile file("a.exr");
-    EXPECT_EQ(file.path(), ".a." + std::to_string(getpid()) + ".tmp.exr");
+    EXPECT_THAT(file.path(), testing::MatchesRegex("\\.a\\.[0-9a-f]+\\.tmp\\.exr"));
     write_file(file.path(), "new");
     EXPECT_EQ(contents("a.exr"), "old");
     file.commit();
@@ -122,9 +125,19 @@ TEST_F(Pending, LeavesNothingIfGivenUp) {
 
 TEST_F(Pending, MakesTheFoldersItNeeds) {
     PendingFile file("frames/left/0001.exr");
-    EXPECT_EQ(file.path(), "frames/left/.0001." + std::to_string(getpid()) + ".tmp.exr");
+    EXPECT_THAT(file.path(), testing::MatchesRegex("frames/left/\\.0001\\.[0-9a-f]+\\.tmp\\.exr"));
     file.commit();
     EXPECT_TRUE(std::filesystem::exists("frames/left/0001.exr"));
+}
+
+TEST_F(Pending, LeavesNothingIfInterrupted) {
+    const auto interrupted = [] {
+        const PendingFile file("a.exr");
+        write_file(file.path(), "half");
+        std::raise(SIGTERM);
+    };
+    EXPECT_EXIT(interrupted(), testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(files_here(), 0);
 }
 
 TEST_F(Pending, SaysWhyItCannotBe) {

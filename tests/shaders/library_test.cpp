@@ -1,4 +1,4 @@
-// What single shaders are known to look like: the figures of SHADERS.md, section 2.
+// What single shaders are known to look like: reference figures of their patterns.
 #include <gtest/gtest.h>
 
 #include <cmath>

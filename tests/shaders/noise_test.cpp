@@ -1,4 +1,4 @@
-// Noise, cellnoise and turbulence against the double reference and the figures of SHADERS.md.
+// Noise, cellnoise and turbulence against the double reference and their reference figures.
 #include "estara/shaders/noise.h"
 
 #include <gtest/gtest.h>

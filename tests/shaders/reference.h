@@ -1,4 +1,4 @@
-// The building blocks and the shaders of SHADERS.md once more, in double precision and as plainly
+// The building blocks and the shaders once more, in double precision and as plainly
 // as possible: what the fast float versions are tested against. The two share the integer hash
 // alone.
 #pragma once

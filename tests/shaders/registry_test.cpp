@@ -185,7 +185,8 @@ TEST(Registry, DeclaresParametersAndChannelsCompletely) {
     }
 }
 
-// SHADERS.md, section 2; plastic is RSL's, and stone's Cs, the surface colour there, our choice.
+// The shaders' published parameters; plastic is RSL's, and stone's Cs, the surface colour there,
+// our choice.
 TEST(Registry, HasThePublishedDefaults) {
     const std::map<std::string, std::vector<std::string>> published{
         {"wood",

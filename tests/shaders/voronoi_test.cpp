@@ -1,4 +1,4 @@
-// Voronoi cells against the double reference and the figures of SHADERS.md.
+// Voronoi cells against the double reference and its reference figures.
 #include <gtest/gtest.h>
 
 #include <cmath>

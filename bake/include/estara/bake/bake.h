@@ -17,8 +17,8 @@ using VoxelsDone = std::function<void(std::uint64_t)>;
 
 /// What a bake of a mesh will take, estimated without doing it.
 struct BakeEstimate {
-    std::uint64_t voxels = 0;   ///< active voxels of level 0
-    std::uint64_t bytes = 0;    ///< peak memory of the bake
+    std::uint64_t voxels = 0;  ///< active voxels of level 0
+    std::uint64_t bytes = 0;   ///< peak memory of the bake
 };
 
 /// Voxelises the mesh more coarsely, at no more than 128 voxels along its diagonal, and scales the
@@ -37,8 +37,8 @@ TextureGrid bake_mesh(const Mesh& mesh, const BoundShader& shader, double voxel_
                       const VoxelsDone& done = {});
 
 /// |lookup(p) - shader(p)| at surface points that the bake never saw, through the lookup that
-/// rendering uses, on level 0; linear colour. The points are random, uniform by area. Parallel; the same
-/// figures for any number of threads.
+/// rendering uses, on level 0; linear colour. The points are random, uniform by area. Parallel; the
+/// same figures for any number of threads.
 /// @param filter_width  of the reference: the voxel size
 /// @return              by channel; mean and RMSE over points and components
 std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& shader,
@@ -48,16 +48,22 @@ std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& sha
 /// How many surface points an error is measured at: p99.9 then rests on 262 of them.
 inline constexpr std::uint64_t error_samples = std::uint64_t{1} << 18;
 
-/// Bakes with the largest voxel that keeps every channel's RMSE within a bound: a voxel a tenth larger
-/// was tried and broke it, or the voxel is a sixteenth of the object's diagonal.
+/// Bakes with the largest voxel that keeps every channel's RMSE within a bound: a voxel a tenth
+/// larger was tried and broke it, or the voxel is a sixteenth of the object's diagonal.
 struct BoundedBake {
-    TextureGrid grid;   ///< errors filled in
+    TextureGrid grid;  ///< errors filled in
     int attempts = 0;
 };
 
+/// Told of each attempt's voxel size and number of voxels; gives what to tell of its progress.
+using AttemptBegins = std::function<VoxelsDone(double voxel_size, std::uint64_t voxels)>;
+
 /// @param max_error  bound on RMSE, > 0
-/// @param max_bytes  Error (failed) with what was reached if the bound needs a bake larger than this
+/// @param max_bytes  memory for all of it. Error (failed), with what was reached, if the bound
+/// needs
+///                   more or a voxel below finest_voxel_size()
 BoundedBake bake_to_error(const Mesh& mesh, const BoundShader& shader, double max_error, bool half,
-                          std::uint64_t max_bytes, std::uint64_t seed, const VoxelsDone& done = {});
+                          std::uint64_t max_bytes, std::uint64_t seed,
+                          const AttemptBegins& begin = {});
 
 }  // namespace estara

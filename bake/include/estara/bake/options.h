@@ -14,22 +14,22 @@ namespace estara::bake {
 struct Options {
     std::string shader, scene, output;
     bool list_shaders = false, markdown = false;
-    std::string describe;                ///< a shader's name; "": none
-    std::vector<Setting> params;         ///< over what the scene says
-    std::vector<std::string> objects;    ///< globs; none: those that wear the shader
-    std::optional<double> voxel_size;    ///< object space; none: from the camera path
-    std::optional<double> max_error;     ///< bound on RMSE; none: no bound
-    std::optional<FrameRange> frames;    ///< none: the scene's animation
+    std::string describe;              ///< a shader's name; "": none
+    std::vector<Setting> params;       ///< over what the scene says
+    std::vector<std::string> objects;  ///< globs; none: those that wear the shader
+    std::optional<double> voxel_size;  ///< object space; none: from the camera path
+    std::optional<double> max_error;   ///< bound on RMSE; none: no bound
+    std::optional<FrameRange> frames;  ///< none: the scene's animation
     double fps = 24.0;
-    glm::ivec2 resolution{640, 360};     ///< of the images that the voxel size is chosen for
-    std::string camera;                  ///< "": the first one
-    std::uint64_t max_memory = 0;        ///< bytes; 0: half of the machine's
+    glm::ivec2 resolution{640, 360};  ///< of the images that the voxel size is chosen for
+    std::string camera;               ///< "": the first one
+    std::uint64_t max_memory = 0;     ///< bytes; 0: half of the machine's
     VdbWriteOptions file;
     bool dry_run = false;
-    std::string stats;                   ///< file name; "": none
-    int threads = 0;                     ///< 0: one a core
+    std::string stats;  ///< file name; "": none
+    int threads = 0;    ///< 0: one a core
     ProgressStyle progress = ProgressStyle::automatic;
-    std::uint64_t seed = 0;              ///< of the points where the error is measured
+    std::uint64_t seed = 0;  ///< of the points where the error is measured
 };
 
 /// Reads the command line. Error, one line, for anything that is not as --help says.

@@ -1,4 +1,5 @@
-// The voxels around a surface that a lookup on it can touch, and for each the nearest surface point.
+// The voxels around a surface that a lookup on it can touch, and for each the nearest surface
+// point.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,14 +14,16 @@ namespace estara {
 
 /// Voxels and cells as in GridLevel, and what is known of every voxel, by row.
 struct SurfaceBand {
-    double voxel_size = 1.0;           ///< object space
-    glm::dvec3 origin{0.0};            ///< object position of voxel (0, 0, 0)
+    double voxel_size = 1.0;  ///< object space
+    glm::dvec3 origin{0.0};   ///< object position of voxel (0, 0, 0)
     std::vector<Block> blocks;
-    std::vector<BlockMask> cells;      ///< by block
-    std::vector<std::uint32_t> triangle;  ///< nearest one of those that cross the eight cells around
+    std::vector<BlockMask> cells;  ///< by block
+    std::vector<std::uint32_t>
+        triangle;  ///< nearest one of those that cross the eight cells around
     std::vector<glm::vec2> barycentrics;  ///< b1, b2 of its nearest point
-    /// To that point, object space; negative behind the surface. The distance to the mesh itself where
-    /// that is up to a voxel; beyond, it may be larger: what does not cross a cell around is not seen.
+    /// To that point, object space; negative behind the surface. The distance to the mesh itself
+    /// where that is up to a voxel; beyond, it may be larger: what does not cross a cell around is
+    /// not seen.
     std::vector<float> distance;
 
     std::uint64_t voxels() const noexcept { return triangle.size(); }

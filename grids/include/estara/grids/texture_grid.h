@@ -36,54 +36,59 @@ struct BlockMask {
 
 /// The active voxels of an 8^3 block, and where their values start.
 struct Block {
-    glm::ivec3 origin{0};      ///< index space, of the voxel with the smallest coordinates; multiples of 8, >= 0
-    BlockMask active;          ///< never empty
-    std::uint64_t first = 0;   ///< row of its first active voxel; the others follow in bit order
+    glm::ivec3 origin{
+        0};  ///< index space, of the voxel with the smallest coordinates; multiples of 8, >= 0
+    BlockMask active;         ///< never empty
+    std::uint64_t first = 0;  ///< row of its first active voxel; the others follow in bit order
 };
 
 /// One level of detail. Voxel centres lie at whole index coordinates; voxel (i, j, k) of level n
 /// has the position of voxel (2i, 2j, 2k) of level n - 1.
 struct GridLevel {
-    std::vector<Block> blocks;   ///< ascending by (x, y, z) of origin
+    std::vector<Block> blocks;  ///< ascending by (x, y, z) of origin
     /// Cells (unit cubes between eight voxels, named by the smallest corner) that the surface
-    /// crosses, by block in the same order; a block may have voxels and no cell. Not stored in files.
+    /// crosses, by block in the same order; a block may have voxels and no cell. Not stored in
+    /// files.
     std::vector<BlockMask> cells;
     /// planes[c][row]: float c of the baked record, row as Block::first says.
     std::vector<std::vector<float>> planes;
 
     std::uint64_t voxels() const noexcept {
-        return blocks.empty() ? 0 : blocks.back().first + std::uint64_t(blocks.back().active.count());
+        return blocks.empty() ? 0
+                              : blocks.back().first + std::uint64_t(blocks.back().active.count());
     }
 };
 
 struct GridChannel {
-    std::string name;   ///< "color", "specular", ...: the grid's name in the file
-    int components;     ///< 1 or 3
+    std::string name;  ///< "color", "specular", ...: the grid's name in the file
+    int components;    ///< 1 or 3
 };
 
 /// Error of what a lookup returns against the shader itself, over random points of the surface.
 struct ErrorFigures {
-    double mean = 0.0, rmse = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;  ///< of |difference| of a component
-    std::uint64_t samples = 0;                                       ///< surface points
+    double mean = 0.0, rmse = 0.0, p99 = 0.0, p999 = 0.0,
+           max = 0.0;           ///< of |difference| of a component
+    std::uint64_t samples = 0;  ///< surface points
 };
 
 /// An object's baked shader: a pyramid of levels in the object's space.
 struct TextureGrid {
-    std::string object;               ///< the scene's name for it; "" in a file of one object
-    double voxel_size = 1.0;          ///< edge of a voxel of level 0, object space
-    glm::dvec3 origin{0.0};           ///< object position of index (0, 0, 0), on every level
+    std::string object;       ///< the scene's name for it; grids carry it in a file of several
+    double voxel_size = 1.0;  ///< edge of a voxel of level 0, object space
+    glm::dvec3 origin{0.0};   ///< object position of index (0, 0, 0), on every level
     std::vector<GridChannel> channels;
-    std::vector<GridLevel> levels;    ///< finest first, at least one
+    std::vector<GridLevel> levels;  ///< finest first, at least one
 
     /// Signed distance to the nearest triangle at level 0's voxels, object space, by row; negative
     /// behind the surface. Becomes the grid "surface". Empty after reading a file.
     std::vector<float> distance;
-    bool closed = false;              ///< the mesh is watertight: the inside of "surface" is filled
+    bool closed = false;  ///< the mesh is watertight: the inside of "surface" is filled
 
-    std::string shader;               ///< its name
-    std::vector<std::pair<std::string, std::vector<float>>> params;  ///< every parameter, 1 or 3 floats
+    std::string shader;  ///< its name
+    std::vector<std::pair<std::string, std::vector<float>>>
+        params;  ///< every parameter, 1 or 3 floats
     std::string shader_digest, mesh_digest;
-    std::vector<ErrorFigures> errors; ///< by channel; may be empty
+    std::vector<ErrorFigures> errors;  ///< by channel; may be empty
     std::string tool_version;
 
     int floats() const noexcept {

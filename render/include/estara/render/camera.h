@@ -9,6 +9,12 @@
 
 namespace estara {
 
+/// A point as the eye sees it.
+struct Sight {
+    ViewDirection V;
+    float distance;  ///< world units
+};
+
 /// A pinhole camera at one time, with an image of one size. The only maker of ViewDirection.
 class Camera {
 public:
@@ -20,12 +26,9 @@ public:
     /// has 1 along the viewing axis, so t of a hit is not the distance.
     Ray primary_ray(float x, float y) const noexcept;
 
-    /// Unit vector from a point to the eye, world space. At the eye itself, where there is none:
+    /// The way from a point, world space, to the eye. At the eye itself, where there is none, V is
     /// the way back along the viewing axis.
-    ViewDirection view_direction(const glm::vec3& P) const noexcept;
-
-    /// Distance from the eye to a point, world units.
-    float distance(const glm::vec3& P) const noexcept;
+    Sight sight(const glm::vec3& P) const noexcept;
 
     /// Angle between neighbouring pixels at the image centre, radians.
     float pixel_angle() const noexcept { return m_pose.pixel_angle(m_height); }

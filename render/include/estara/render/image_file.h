@@ -15,4 +15,7 @@ namespace estara {
 /// Error: the folder cannot be made or written to (bad_input); the disk is full (failed).
 void write_image(const std::string& path, ImageFormat format, const Film& film);
 
+/// Width and height of an image file; (0, 0) if it cannot be read.
+glm::ivec2 image_size(const std::string& path);
+
 }  // namespace estara

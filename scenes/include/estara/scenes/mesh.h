@@ -31,18 +31,27 @@ Box bounds(const Mesh& mesh);
 /// Surface area, object space units squared.
 double area(const Mesh& mesh);
 
+/// The smallest voxel that the mesh can be divided into, object space: floats tell sixteenths of it
+/// apart at the mesh's coordinates, and it goes 131072 times into the longest side. 0 for a mesh
+/// that is one point at the origin.
+double finest_voxel_size(const Mesh& mesh);
+
 /// A point on a triangle.
 struct MeshPoint {
-    glm::vec3 P;     ///< interpolated from the vertices, object space
-    glm::vec3 N;     ///< shading normal, unit: interpolated, or Ng where the mesh has none or they cancel
-    glm::vec3 Ng;    ///< geometric normal, unit; (0, 0, 1) on a degenerate triangle
-    glm::vec2 uv;    ///< (0, 0) without texture coordinates
-    glm::vec3 dPdu;  ///< never zero: some tangent where uv does not give one
+    glm::vec3 P;             ///< interpolated from the vertices, object space
+    glm::vec3 N;             ///< shading normal, unit: interpolated; Ng without, or if they cancel
+    glm::vec3 Ng;            ///< geometric normal, unit; (0, 0, 1) on a degenerate triangle
+    glm::vec2 uv;            ///< (0, 0) without texture coordinates
+    std::uint32_t triangle;  ///< that it lies on
 };
 
 /// The point (1 - b1 - b2) P0 + b1 P1 + b2 P2 of a triangle.
 /// @param b1, b2  barycentric coordinates as Embree's u and v: >= 0, b1 + b2 <= 1
 MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b2) noexcept;
+
+/// Change of P with u at a point of the mesh, object space. Never zero: some tangent where uv does
+/// not give one. Not a part of MeshPoint because few need it and it costs as much as the rest.
+glm::vec3 tangent(const Mesh& mesh, const MeshPoint& point) noexcept;
 
 /// 16 hex digits that change whenever a position, texture coordinate, normal or triangle does.
 std::string mesh_digest(const Mesh& mesh);

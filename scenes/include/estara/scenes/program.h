@@ -4,7 +4,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "estara/scenes/error.h"
 #include "estara/scenes/scene.h"
@@ -59,12 +62,14 @@ private:
     std::unique_ptr<Impl> m_impl;
 };
 
-/// Where a file is written before it is whole: beside the final name, same ending (".name.PID.tmp.exr").
-/// Moved into place by commit(); removed by the destructor otherwise, so that nothing half-written
-/// is ever seen under the final name.
+/// Where a file is written before it is whole: beside the final name, same ending
+/// (".name.PID.tmp.exr"). Moved into place by commit(); removed by the destructor otherwise, so
+/// that nothing half-written is ever seen under the final name. Removed too if the program is
+/// interrupted (SIGINT, SIGTERM, SIGHUP).
 class PendingFile {
 public:
-    /// Creates missing parent folders. Error (bad_input) if the folder cannot be made or written to.
+    /// Creates missing parent folders. Error (bad_input) if the folder cannot be made or written
+    /// to.
     explicit PendingFile(std::string final_path);
     ~PendingFile();
     PendingFile(const PendingFile&) = delete;
@@ -77,6 +82,13 @@ private:
     std::string m_final, m_path;
     bool m_committed = false;
 };
+
+/// Writes a small text file whole or not at all. Error (failed) if the disk is full.
+void write_text(const std::string& path, const std::string& text);
+
+/// Error if two options would read or write the same file, in whatever way it is spelt.
+/// @param files  option (as the user knows it) and file; empty files are left out
+void refuse_same_file(const std::vector<std::pair<std::string, std::string>>& files);
 
 /// Seconds since construction.
 class Stopwatch {

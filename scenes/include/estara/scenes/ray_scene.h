@@ -53,19 +53,6 @@ private:
     std::unique_ptr<Impl> m_impl;
 };
 
-/// A point moved off its surface by more than the rounding error with which it was computed, so
-/// that a ray from it does not meet the surface again and does not skip what is near.
-/// (Bound after Pharr, Jakob & Humphreys 2016, "Physically Based Rendering", section 3.9.)
-/// @param P             hit point, world, = world_from_object * P_object computed in float
-/// @param N             unit geometric normal on the side the ray leaves to, world
-/// It is moved by less than 64 ulps of P's largest coordinate where object and world sizes are alike.
-/// @param world_from_object, P_object  what P was computed from: their sizes bound its error. Of
-///        P_object only magnitudes count; for a triangle that is large compared with |P_object|
-///        (aslant through the origin) give the largest magnitudes of its vertices instead
-glm::vec3 offset_from_surface(const glm::vec3& P, const glm::vec3& N,
-                              const glm::mat4& world_from_object,
-                              const glm::vec3& P_object) noexcept;
-
 /// For each object the smallest width that a pixel covers on it, over all frames in which some
 /// pixel sees it, object space; infinity for an object no pixel of any frame sees.
 ///
@@ -73,5 +60,14 @@ glm::vec3 offset_from_surface(const glm::vec3& P, const glm::vec3& N,
 /// exact there, a closer point between samples is missed. Moves `rays`. Deterministic.
 std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int camera,
                                        const FrameRange& frames, double fps, int width, int height);
+
+/// The voxel size of each object if the user gives none, object space, > 0: half its smallest
+/// footprint over the frames, so that the blur of a lookup stays below the pixel; 1/512 of its
+/// diagonal if no pixel sees it. Between 1/32 and 1/16384 of the diagonal, and no smaller than
+/// finest_voxel_size(). Also the filter width of direct evaluation, so that both have the same
+/// octaves.
+std::vector<double> automatic_voxel_sizes(const Scene& scene, RayScene& rays, int camera,
+                                          const FrameRange& frames, double fps, int width,
+                                          int height);
 
 }  // namespace estara

@@ -16,19 +16,19 @@ namespace estara {
 
 /// What a material says about its shader, as the user wrote it.
 struct ShaderChoice {
-    std::string name;               ///< empty: the material names none
+    std::string name;  ///< empty: the material names none
     std::vector<Setting> settings;
-    std::string where;              ///< "scene.glb: material \"table\"", for messages
+    std::string where;  ///< "scene.glb: material \"table\"", for messages
 };
 
 /// A mesh with its material: what is baked, and what grids are named after.
 struct Object {
     std::string name;  ///< unique in the scene; letters, digits, '_', '-' and '.' only (else '_')
-    std::string mesh_name;              ///< as in the file; messages and --object know it too
+    std::string mesh_name;  ///< as in the file; messages and --object know it too
     Mesh mesh;
     ShaderChoice choice;
-    glm::vec3 base_color{0.5f};         ///< glTF baseColorFactor; what an object without shader shows
-    BoundShaderPtr shader;              ///< choice bound; `plastic` with Cs = base_color without one
+    glm::vec3 base_color{0.5f};  ///< glTF baseColorFactor; what an object without shader shows
+    BoundShaderPtr shader;       ///< choice bound; `plastic` with Cs = base_color without one
     bool wears_shader() const noexcept { return !choice.name.empty(); }
 };
 
@@ -89,13 +89,14 @@ struct FrameRange {
 };
 
 struct Scene {
-    std::string path;              ///< as the user named the file
-    std::vector<Node> nodes;       ///< parents before children
+    std::string path;         ///< as the user named the file
+    std::vector<Node> nodes;  ///< parents before children
     std::vector<Object> objects;
     std::vector<Instance> instances;
     std::vector<SceneCamera> cameras;
     std::vector<SceneLight> lights;
-    glm::vec3 ambient{0.0f};       ///< RSL's ambient light, added to every surface (scene extras "ambient")
+    glm::vec3 ambient{
+        0.0f};  ///< RSL's ambient light, added to every surface (scene extras "ambient")
     std::vector<std::string> warnings;  ///< what the file has and this project does not show
 };
 
@@ -124,9 +125,10 @@ std::vector<PosedLight> posed_lights(const Scene& scene, const Pose& pose);
 
 /// What of a light arrives at a point if nothing is in between.
 struct LightSample {
-    glm::vec3 L{0.0f};       ///< unit, from the point to the light, world
-    float distance = 0.0f;   ///< to the light; infinity for directional lights
-    glm::vec3 Cl{0.0f};      ///< irradiance at normal incidence / pi; 0 outside cone and range, and at the light itself
+    glm::vec3 L{0.0f};      ///< unit, from the point to the light, world
+    float distance = 0.0f;  ///< to the light; infinity for directional lights
+    glm::vec3 Cl{0.0f};  ///< irradiance at normal incidence / pi; 0 outside cone and range, and at
+                         ///< the light itself
 };
 
 /// Attenuation as KHR_lights_punctual recommends (inverse square, windowed by range; spot cone).

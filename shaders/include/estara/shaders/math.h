@@ -45,13 +45,15 @@ ESTARA_KERNEL float filterstep(float edge, float x, float w) noexcept {
 
 /// smoothstep(a, b, x) averaged over a box of width w > 0 around x; a < b. Integrates
 /// G(t) = t^3 - t^4 / 2, the primitive of 3t^2 - 2t^3, over the part of the box inside [a, b] and
-/// adds the length beyond b. (SHADERS.md, section 1.) Absolute error below
-/// 1e-6 + 5e-7 (b - a + |x|) / w (tested): differences are divided by w, so narrow boxes lose digits.
+/// adds the length beyond b. Absolute error below
+/// 1e-6 + 5e-7 (b - a + |x|) / w (tested): differences are divided by w, so narrow boxes lose
+/// digits.
 ESTARA_KERNEL float filtered_smoothstep(float a, float b, float x, float w) noexcept {
     const float left = x - 0.5f * w, right = x + 0.5f * w, width = b - a;
     const float t0 = clamp((left - a) / width, 0.0f, 1.0f);
     const float t1 = clamp((right - a) / width, 0.0f, 1.0f);
-    const float inside = width * (t1 * t1 * t1 * (1.0f - 0.5f * t1) - t0 * t0 * t0 * (1.0f - 0.5f * t0));
+    const float inside =
+        width * (t1 * t1 * t1 * (1.0f - 0.5f * t1) - t0 * t0 * t0 * (1.0f - 0.5f * t0));
     const float beyond = right > b ? right - (left > b ? left : b) : 0.0f;
     return clamp((inside + beyond) / w, 0.0f, 1.0f);
 }
@@ -67,7 +69,8 @@ ESTARA_KERNEL float log2_kernel(float x) noexcept {
     const float m = std::bit_cast<float>((shifted & 0x007fffffu) + 0x3f3504f3u);
     const float s = (m - 1.0f) / (m + 1.0f);
     const float s2 = s * s;
-    const float series = 1.0f + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))));
+    const float series =
+        1.0f + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))));
     return float(exponent) + 2.88539008f * s * series;  // 2 / ln 2
 }
 
@@ -76,20 +79,23 @@ ESTARA_KERNEL float log2_kernel(float x) noexcept {
 /// Taylor series of e^(f ln 2) for the fraction f in [-1/2, 1/2], cut after the seventh power,
 /// where the rest is below 6e-9; the whole part goes into the exponent.
 ESTARA_KERNEL float exp2_kernel(float x) noexcept {
-    const float limited = clamp(x, -126.0f, 127.0f);
+    const float limited = x >= -126.0f ? (x > 127.0f ? 127.0f : x) : -126.0f;  // NaN too
     const float whole = std::floor(limited + 0.5f);
     const float f = (limited - whole) * 0.693147181f;
     const float series =
         1.0f +
-        f * (1.0f + f * (1.0f / 2 + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720 + f * (1.0f / 5040)))))));
+        f * (1.0f +
+             f * (1.0f / 2 +
+                  f * (1.0f / 6 +
+                       f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720 + f * (1.0f / 5040)))))));
     const float scale = std::bit_cast<float>(std::uint32_t(int(whole) + 127) << 23);
-    return x < -126.0f ? 0.0f : series * scale;
+    return x >= -126.0f ? series * scale : (x < -126.0f ? 0.0f : x);
 }
 
 /// x^y for x >= 0; 0^0 = 1, x below the normal floats counts as 0, and so does a result below them.
-/// Relative error below 1e-6 + 2e-7 |y log2 x| (tested): 2.6e-5 at worst, 2e-6 where the result lies
-/// in [1/32, 32].
-/// Stands for std::pow in bake(), where one call would keep the whole loop scalar.
+/// Relative error below 1e-6 + 2e-7 |y log2 x| (tested): 2.6e-5 at worst, 2e-6 where the result
+/// lies in [1/32, 32]. Stands for std::pow in bake(), where one call would keep the whole loop
+/// scalar.
 ESTARA_KERNEL float power(float x, float y) noexcept {
     const float smallest = 1.17549435e-38f;
     const float r = exp2_kernel(y * log2_kernel(x < smallest ? smallest : x));

@@ -81,7 +81,8 @@ ESTARA_KERNEL float gradient(std::uint32_t h, float x) noexcept {
 }  // namespace detail
 
 /// Gradient noise of a number, about [-1, 1], mean 0, exactly 0 at whole coordinates.
-/// Perlin 2002; amplitude factors .188, .507, .936 for one to three dimensions (SHADERS.md).
+/// Perlin 2002; amplitude factors .188, .507, .936 for one to three dimensions, with which the
+/// values fill the range.
 /// @param seed  another seed, another noise, independent of the first
 ESTARA_KERNEL float snoise(float x, std::uint32_t seed = 0) noexcept {
     using namespace detail;
@@ -165,8 +166,8 @@ ESTARA_KERNEL void keep_nearest(Voronoi<Point>& v, const Point& feature, float d
 
 }  // namespace detail
 
-/// Worley's F1 and F2 (Apodaca & Gritz 1999, "Advanced RenderMan", chapter 10): the feature point of
-/// a cell is its centre moved by jitter * (cellnoise - 1/2).
+/// Worley's F1 and F2 (Apodaca & Gritz 1999, "Advanced RenderMan", chapter 10): the feature point
+/// of a cell is its centre moved by jitter * (cellnoise - 1/2).
 ///
 /// Searches the 3^n cells around the point, as the source does. That is not exact: a nearer point
 /// can hide two cells away (f1 reaches 1.17), which shows as rare, tiny seams; they are accepted,
@@ -179,9 +180,8 @@ ESTARA_KERNEL Voronoi<glm::vec2> voronoi(const glm::vec2& p, float jitter) noexc
 #pragma GCC unroll 9
     for (int n = 0; n < 9; ++n) {
         const int x = cell.x + n % 3 - 1, y = cell.y + n / 3 - 1;
-        const glm::vec2 feature(
-            float(x) + 0.5f + jitter * (unit_float(hash(x, y, 0, 1u)) - 0.5f),
-            float(y) + 0.5f + jitter * (unit_float(hash(x, y, 0, 2u)) - 0.5f));
+        const glm::vec2 feature(float(x) + 0.5f + jitter * (unit_float(hash(x, y, 0, 1u)) - 0.5f),
+                                float(y) + 0.5f + jitter * (unit_float(hash(x, y, 0, 2u)) - 0.5f));
         const float dx = feature.x - p.x, dy = feature.y - p.y;
         keep_nearest(v, feature, dx * dx + dy * dy);
     }
@@ -195,10 +195,9 @@ ESTARA_KERNEL Voronoi<glm::vec3> voronoi(const glm::vec3& p, float jitter) noexc
 #pragma GCC unroll 27
     for (int n = 0; n < 27; ++n) {
         const int x = cell.x + n % 3 - 1, y = cell.y + n / 3 % 3 - 1, z = cell.z + n / 9 - 1;
-        const glm::vec3 feature(
-            float(x) + 0.5f + jitter * (unit_float(hash(x, y, z, 1u)) - 0.5f),
-            float(y) + 0.5f + jitter * (unit_float(hash(x, y, z, 2u)) - 0.5f),
-            float(z) + 0.5f + jitter * (unit_float(hash(x, y, z, 3u)) - 0.5f));
+        const glm::vec3 feature(float(x) + 0.5f + jitter * (unit_float(hash(x, y, z, 1u)) - 0.5f),
+                                float(y) + 0.5f + jitter * (unit_float(hash(x, y, z, 2u)) - 0.5f),
+                                float(z) + 0.5f + jitter * (unit_float(hash(x, y, z, 3u)) - 0.5f));
         const float dx = feature.x - p.x, dy = feature.y - p.y, dz = feature.z - p.z;
         keep_nearest(v, feature, dx * dx + dy * dy + dz * dz);
     }
@@ -219,11 +218,11 @@ enum class Phi {
     deviation  ///< |noise - 1/2|: creases along its zeros, which become veins
 };
 
-/// Term k of turbulence clamped at the filter width (RenderMan Companion style; SHADERS.md,
-/// section 1): 2^-k phi(2^k q), where octaves finer than twice the width are left out and the last
-/// one is faded in. The factor clamp(2^-k / w - 1, 0, 1) is 1 for the whole octaves, beta for the
-/// last and 0 beyond, so one expression serves all terms. The turbulence is the sum over
-/// k < octaves_for(w); terms more than that change nothing.
+/// Term k of turbulence clamped at the filter width (after Upstill 1990,
+/// "The RenderMan Companion"): 2^-k phi(2^k q), where octaves finer than twice the width are left
+/// out and the last one is faded in. The factor clamp(2^-k / w - 1, 0, 1) is 1 for the whole
+/// octaves, beta for the last and 0 beyond, so one expression serves all terms. The turbulence is
+/// the sum over k < octaves_for(w); terms more than that change nothing.
 /// @param q  position in units of the lattice
 /// @param w  filter width in the same units, > 0: a voxel's edge, never a pixel's
 /// @param k  [0, 24)

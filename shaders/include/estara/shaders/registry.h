@@ -76,7 +76,8 @@ struct Setting {
 struct Problem {
     std::string setting;  ///< the name the user wrote
     std::string what;     ///< "shader 'wood' has no parameter 'ringscael'"
-    std::string hint;     ///< "did you mean 'ringscale'? it has: ringscale, lightwood, ..."; may be empty
+    std::string
+        hint;  ///< "did you mean 'ringscale'? it has: ringscale, lightwood, ..."; may be empty
 };
 
 /// A shader with its parameters, type-erased. Immutable; any thread may use one at any time.

@@ -29,10 +29,10 @@ struct Light {
 /// A surface point as one camera sees it. It has no position: whatever depends on where the point
 /// is has been computed by bake() and is in Baked.
 struct Seen {
-    glm::vec3 N;                   ///< shading normal turned to the side of the eye (N_f), world, unit
-    ViewDirection V;               ///< towards the eye
-    glm::vec3 E;                   ///< diffuse light on N: sum of Cl <N.L>+, shadows included
-    glm::vec3 A;                   ///< sum of the ambient lights
+    glm::vec3 N;      ///< shading normal turned to the side of the eye (N_f), world, unit
+    ViewDirection V;  ///< towards the eye
+    glm::vec3 E;      ///< diffuse light on N: sum of Cl <N.L>+, shadows included
+    glm::vec3 A;      ///< sum of the ambient lights
     std::span<const Light> lights;
 };
 

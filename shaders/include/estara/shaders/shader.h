@@ -8,7 +8,8 @@
 // comes along: this is what makes the baked half reusable in every frame. A shader may also have
 //
 //     Domain  domain() const noexcept;              what decides its colour; default: Domain::point
-//     float   octave(const SurfacePoint&, int k) const noexcept;  a term of a sum over octaves, whose
+//     float   octave(const SurfacePoint&, int k) const noexcept;  a term of a sum over octaves,
+//     whose
 //                                                   length depends on the filter width: octave_sum
 //     float   octave_frequency() const noexcept;    lattice cells per length in term 0; default: 1
 //     S       resolved(bool has_uv) const noexcept; settles parameters that depend on the mesh
@@ -50,15 +51,17 @@ struct Channel {
 /// Whether S has a sum over octaves; is_shader() refuses an octave() of another form.
 template <class S>
 concept HasOctaves = requires(const S& shader, const SurfacePoint& x) {
-    { shader.octave(x, 0) } noexcept -> std::same_as<float>;
+    { shader.octave(x, 0) }
+    noexcept->std::same_as<float>;
 };
 
 namespace detail {
 
 template <class S, class T>
 constexpr std::size_t bytes_of(const Param<S, T>&) {
-    static_assert(std::is_same_v<T, float> || std::is_same_v<T, int> || std::is_same_v<T, glm::vec3>,
-                  "a parameter is a float, an int or a vec3");
+    static_assert(
+        std::is_same_v<T, float> || std::is_same_v<T, int> || std::is_same_v<T, glm::vec3>,
+        "a parameter is a float, an int or a vec3");
     return sizeof(T);
 }
 template <class B, class T>
@@ -80,18 +83,23 @@ constexpr std::size_t bytes_declared(const Tuple& declared) {
 template <class S>
 consteval bool is_shader() {
     using Baked = typename S::Baked;
-    static_assert(std::is_nothrow_invocable_r_v<Baked, decltype(&S::bake), const S&, const SurfacePoint&>,
-                  "bake() takes a SurfacePoint and nothing else; it is const and noexcept");
-    static_assert(std::is_nothrow_invocable_r_v<glm::vec3, decltype(&S::view), const S&, const Baked&, const Seen&>,
+    static_assert(
+        std::is_nothrow_invocable_r_v<Baked, decltype(&S::bake), const S&, const SurfacePoint&>,
+        "bake() takes a SurfacePoint and nothing else; it is const and noexcept");
+    static_assert(std::is_nothrow_invocable_r_v<glm::vec3, decltype(&S::view), const S&,
+                                                const Baked&, const Seen&>,
                   "view() takes a Baked and a Seen and nothing else; it is const and noexcept");
     static_assert(std::is_trivially_copyable_v<S> && std::is_default_constructible_v<S>,
                   "a shader is a plain bag of parameters: it owns nothing");
     static_assert(sizeof(S) == detail::bytes_declared(S::params()),
                   "every member of a shader is one of its params(): nothing else comes along");
-    static_assert(std::is_trivially_copyable_v<Baked> && sizeof(Baked) == detail::bytes_declared(S::channels()),
-                  "every member of Baked is one of its channels(): what is not stored cannot be read back");
-    static_assert(HasOctaves<S> || !requires { &S::octave; },
-                  "octave() takes a SurfacePoint and an int and returns a float; it is const and noexcept");
+    static_assert(
+        std::is_trivially_copyable_v<Baked> &&
+            sizeof(Baked) == detail::bytes_declared(S::channels()),
+        "every member of Baked is one of its channels(): what is not stored cannot be read back");
+    static_assert(
+        HasOctaves<S> || !requires { &S::octave; },
+        "octave() takes a SurfacePoint and an int and returns a float; it is const and noexcept");
     return true;
 }
 

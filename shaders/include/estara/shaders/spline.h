@@ -11,7 +11,7 @@
 namespace estara {
 
 /// Value of the curve through knots[1] (x <= 0) ... knots[n-2] (x >= 1); the outermost knots only
-/// give the slope at the ends. It can overshoot the knots: clamp colours to >= 0. (SHADERS.md 1.)
+/// give the slope at the ends. It can overshoot the knots: clamp colours to >= 0.
 /// @tparam T  float or a glm vector
 template <class T, std::size_t n>
 ESTARA_KERNEL T spline(float x, const std::array<T, n>& knots) noexcept {

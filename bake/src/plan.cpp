@@ -1,0 +1,114 @@
+#include "plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estara/scenes/ray_scene.h"
+
+namespace estara::bake {
+namespace {
+
+/// The scene's own settings if the object wears the shader there, with --param over them.
+ShaderChoice choose(const Object& object, const Options& options) {
+    ShaderChoice choice{
+        options.shader, {}, fmt::format("{}: object \"{}\"", options.scene, object.name)};
+    if (object.choice.name == options.shader) choice = object.choice;
+    for (const Setting& setting : options.params) {
+        std::erase_if(choice.settings, [&](const Setting& s) { return s.name == setting.name; });
+    }
+    if (!options.params.empty()) choice.where = "--param";
+    choice.settings.insert(choice.settings.end(), options.params.begin(), options.params.end());
+    return choice;
+}
+
+std::vector<double> sizes_from_camera(const Scene& scene, const Options& options) {
+    RayScene rays(scene);
+    return automatic_voxel_sizes(scene, rays, find_camera(scene, options.camera),
+                                 options.frames.value_or(animated_frames(scene, options.fps)),
+                                 options.fps, options.resolution.x, options.resolution.y);
+}
+
+void check_size(const Job& job, double size) {
+    const double diagonal = bounds(job.object->mesh).diagonal();
+    if (size <= diagonal) return;
+    throw Error(fmt::format("voxel size {:.4g} is larger than the object, which measures {:.4g}",
+                            size, diagonal));
+}
+
+/// Estimates all jobs with their voxels `factor` times as large.
+/// @return bytes of all of them: they go into one file and are in memory together
+std::uint64_t estimate(std::vector<Job>& jobs, double factor) {
+    std::uint64_t bytes = 0;
+    for (Job& job : jobs) {
+        if (!job.voxel_size) continue;
+        job.estimate = naming(job, [&] {
+            return estimate_bake(job.object->mesh, job.shader->info(), *job.voxel_size * factor);
+        });
+        bytes += job.estimate.bytes;
+    }
+    return bytes;
+}
+
+/// By how much the voxels must grow for all jobs to fit. Error if no growth helps.
+double fitting_factor(std::vector<Job> jobs, std::uint64_t bytes, std::uint64_t max_memory) {
+    double factor = 1.0;
+    for (int step = 0; step < 24 && bytes > max_memory; ++step) {
+        factor *= 1.02 * std::sqrt(double(bytes) / double(max_memory));
+        bytes = estimate(jobs, factor);
+    }
+    if (bytes <= max_memory) return factor;
+    throw Error(fmt::format("--max-memory {}: too little for any voxel size; the coarsest needs {}",
+                            format_bytes(max_memory), format_bytes(bytes)),
+                ExitStatus::failed);
+}
+
+void fit_memory(std::vector<Job>& jobs, const Options& options,
+                const std::function<void(const std::string&)>& message) {
+    const std::uint64_t bytes = estimate(jobs, 1.0);
+    if (bytes <= options.max_memory) return;
+    const double factor = fitting_factor(jobs, bytes, options.max_memory);
+    const std::string need =
+        fmt::format("{} about {}, --max-memory is {}",
+                    jobs.size() == 1 ? fmt::format("object \"{}\" needs", jobs.front().object->name)
+                                     : fmt::format("{} objects need", jobs.size()),
+                    format_bytes(bytes), format_bytes(options.max_memory));
+    if (options.voxel_size) {
+        throw Error(
+            fmt::format("{}; this fits: --voxel-size {:.4g}", need, *options.voxel_size * factor),
+            ExitStatus::failed);
+    }
+    message(
+        fmt::format("warning: {}; baked with voxels {:.3g} times as large as the camera path "
+                    "asks for",
+                    need, factor));
+    for (Job& job : jobs) *job.voxel_size *= factor;
+    estimate(jobs, 1.0);
+}
+
+}  // namespace
+
+std::vector<Job> plan(const Scene& scene, const Options& options,
+                      const std::function<void(const std::string&)>& message) {
+    if (!options.camera.empty()) find_camera(scene, options.camera);
+    std::vector<double> sizes;
+    const std::vector<int> selected = select_objects(scene, options.shader, options.objects);
+    std::vector<Job> jobs;
+    for (const int index : selected) {
+        const Object& object = scene.objects[std::size_t(index)];
+        jobs.push_back(
+            {&object, bind_choice(choose(object, options), object.mesh.has_uv()), {}, {}});
+    }
+    if (options.max_error) return jobs;
+    if (!options.voxel_size) sizes = sizes_from_camera(scene, options);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        Job& job = jobs[i];
+        job.voxel_size = options.voxel_size ? *options.voxel_size : sizes[std::size_t(selected[i])];
+        if (options.voxel_size) naming(job, [&] { check_size(job, *job.voxel_size); });
+    }
+    fit_memory(jobs, options, message);
+    return jobs;
+}
+
+}  // namespace estara::bake
