@@ -153,7 +153,7 @@ void write_text(const std::string& path, const std::string& text) {
 void refuse_same_file(const std::vector<std::pair<std::string, std::string>>& files) {
     const auto absolute = [](const std::string& file) {
         std::error_code code;
-        const fs::path path = fs::weakly_canonical(file, code);
+        const fs::path path = fs::weakly_canonical(fs::absolute(file), code);
         return code ? fs::path(file) : path;
     };
     for (std::size_t i = 0; i < files.size(); ++i) {
