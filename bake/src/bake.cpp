@@ -26,15 +26,13 @@ void fill_batch(SurfaceBatch& batch, const Mesh& mesh, Domain domain, const Surf
                 const Block& block) {
     batch.size = 0;
     batch.filter_width = float(band.voxel_size);
-    for (int bit = 0; bit < SurfaceBatch::capacity; ++bit) {
-        if (!block.active.test(bit)) continue;
+    for_each_bit(block.active, [&](int x, int y, int z) {
         const std::uint64_t row = block.first + std::uint64_t(batch.size);
         const glm::vec2 b = band.barycentrics[row];
         const MeshPoint m = mesh_point(mesh, band.triangle[row], b.x, b.y);
-        const glm::ivec3 voxel = block.origin + glm::ivec3(bit >> 6, (bit >> 3) & 7, bit & 7);
-        batch.set(batch.size++, domain == Domain::point ? band.position(voxel) : m.P, m.N, m.uv,
-                  tangent(mesh, m));
-    }
+        const glm::vec3 voxel = band.position(block.origin + glm::ivec3(x, y, z));
+        batch.set(batch.size++, domain == Domain::point ? voxel : m.P, m.N, m.uv, tangent(mesh, m));
+    });
 }
 
 void shade(TextureGrid& grid, const Mesh& mesh, const BoundShader& shader, const SurfaceBand& band,

@@ -198,20 +198,12 @@ struct BlockBuilder {
         const glm::dvec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
         const double length = glm::length(normal);
         const glm::dvec3 unit = length > 0.0 ? normal / length : glm::dvec3(0.0);
-        for_each_bit(touched, [&](int bit) {
-            const glm::dvec3 p = base + glm::dvec3(bit >> 6, (bit >> 3) & 7, bit & 7);
+        for_each_bit(touched, [&](int x, int y, int z) {
+            const int bit = BlockMask::bit(x, y, z);
+            const glm::dvec3 p = base + glm::dvec3(x, y, z);
             keep_nearest(nearest[bit], p, v, unit, triangle);
             active.set(bit);
         });
-    }
-
-    template <class Function>
-    static void for_each_bit(const BlockMask& mask, Function&& function) {
-        for (int w = 0; w < 8; ++w) {
-            for (std::uint64_t bits = mask.words[w]; bits != 0; bits &= bits - 1) {
-                function(w * 64 + std::countr_zero(bits));
-            }
-        }
     }
 
     /// The corners of a cell that are voxels of this block.
@@ -241,8 +233,9 @@ FinishedBlock build_block(const Mesh& mesh, const Lattice& lattice, const Entry*
     }
     FinishedBlock block{builder.active, builder.cells, {}};
     block.voxels.reserve(std::size_t(builder.active.count()));
-    BlockBuilder::for_each_bit(builder.active,
-                               [&](int bit) { block.voxels.push_back(builder.nearest[bit]); });
+    for_each_bit(builder.active, [&](int x, int y, int z) {
+        block.voxels.push_back(builder.nearest[BlockMask::bit(x, y, z)]);
+    });
     return block;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,17 +24,6 @@ inline std::ptrdiff_t find_block(const std::vector<Block>& blocks,
         blocks.begin(), blocks.end(), origin,
         [](const Block& b, const glm::ivec3& o) { return comes_before(b.origin, o); });
     return it != blocks.end() && it->origin == origin ? it - blocks.begin() : -1;
-}
-
-/// Calls f(x, y, z) for every set bit, in bit order, with local coordinates in [0, 8).
-template <class F>
-void for_each_bit(const BlockMask& mask, F&& f) {
-    for (int x = 0; x < 8; ++x) {
-        for (std::uint64_t left = mask.words[std::size_t(x)]; left != 0; left &= left - 1) {
-            const int bit = std::countr_zero(left);
-            f(x, bit >> 3, bit & 7);
-        }
-    }
 }
 
 /// Mean of every plane over the finest level's voxels: the background of the channel's grids and

@@ -20,11 +20,4 @@ struct PosedInstance {
 
 std::vector<PosedInstance> pose_instances(const Scene& scene, const Pose& pose);
 
-/// Largest singular value: how long a unit vector can become.
-double largest_singular_value(const glm::dmat3& m) noexcept;
-
-/// The inverse transpose times some positive number. For a singular matrix still the normals of
-/// what it flattens, as far as they exist.
-glm::dmat3 normal_matrix(const glm::dmat3& m) noexcept;
-
 }  // namespace estara

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estara/scenes/matrix.h"
 #include "estara/scenes/ray_scene.h"
 
 namespace estara {
@@ -15,24 +16,6 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int stride = 4;  // pixels between samples
-
-/// Largest singular value of m: the most by which it lengthens any vector.
-///
-/// Square root of the largest eigenvalue of m^T m, by Smith 1961, "Eigenvalues of a symmetric 3x3
-/// matrix".
-double largest_stretch(const glm::dmat3& m) noexcept {
-    const glm::dmat3 a = glm::transpose(m) * m;
-    const double mean = (a[0][0] + a[1][1] + a[2][2]) / 3.0;
-    glm::dmat3 b = a;
-    for (int i = 0; i < 3; ++i) b[i][i] -= mean;
-    double squares = 0.0;
-    for (int i = 0; i < 3; ++i) squares += glm::dot(b[i], b[i]);
-    const double spread = std::sqrt(squares / 6.0);
-    if (!(spread > 0.0)) return std::sqrt(mean);  // all eigenvalues alike
-    const double r = glm::determinant(b / spread) / 2.0;
-    const double angle = std::acos(std::clamp(r, -1.0, 1.0)) / 3.0;
-    return std::sqrt(mean + 2.0 * spread * std::cos(angle));
-}
 
 /// One thread's rays of one row of samples, and the smallest footprints it has met.
 struct Worker {
@@ -52,7 +35,7 @@ View view_at(const Scene& scene, const SceneCamera& camera, const Pose& pose, in
     const double pixel_angle = view.camera.pixel_angle(height);
     for (const Instance& instance : scene.instances) {
         const glm::mat4& world_from_object = pose.world_from_node[instance.node];
-        const double stretch = largest_stretch(glm::dmat3(glm::mat3(world_from_object)));
+        const double stretch = largest_singular_value(glm::dmat3(glm::mat3(world_from_object)));
         view.footprint_per_distance.push_back(float(pixel_angle / stretch));
     }
     return view;

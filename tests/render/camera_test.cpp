@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "estara/scenes/matrix.h"
 #include "instances.h"
 
 namespace estara {

@@ -58,9 +58,9 @@ public:
     float level_for(float footprint) const noexcept;
 
     /// Added to the level: a lookup blurs over two voxels, so the matching level is too soft. RMSE
-    /// of a still-life frame against 256 samples a pixel, at 4 samples a pixel: .00322 with bias 0,
-    /// .00316 with -1/2, .00317 with -1; at 1 sample .0074, .0075, .0081, and closest to direct
-    /// evaluation with -1 (README.md, "Speed and error", has the command).
+    /// of frame 17 of the still life against 256 samples a pixel, at 4 samples a pixel: .00475 with
+    /// bias 0, .00470 with -1/2, .00472 with -1; at 1 sample .0102, .0104, .0112 (README.md,
+    /// "Speed and error", has the command).
     static constexpr float level_bias = -0.5f;
 
 private:

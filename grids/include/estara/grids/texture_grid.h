@@ -34,6 +34,17 @@ struct BlockMask {
     bool operator==(const BlockMask&) const = default;
 };
 
+/// Calls f(x, y, z) for every set bit, in bit order, with local coordinates in [0, 8).
+template <class F>
+void for_each_bit(const BlockMask& mask, F&& f) {
+    for (int x = 0; x < 8; ++x) {
+        for (std::uint64_t left = mask.words[std::size_t(x)]; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            f(x, bit >> 3, bit & 7);
+        }
+    }
+}
+
 /// The active voxels of an 8^3 block, and where their values start.
 struct Block {
     glm::ivec3 origin{
