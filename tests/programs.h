@@ -96,6 +96,18 @@ inline std::vector<std::string> files_under(const std::string& folder) {
     return names;
 }
 
+/// Names of the folders in a folder that hold a file `command`, sorted: the cases of a driver.
+inline std::vector<std::string> cases_in(const std::string& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (std::filesystem::exists(entry.path() / "command")) {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
 /// An image file in memory; the test fails if it cannot be read.
 class Image {
 public:

@@ -58,17 +58,23 @@ double worst_rmse(const TextureGrid& grid) {
                 ExitStatus::failed);
 }
 
+/// A voxel size and what a bake with it will take.
+struct Attempt {
+    double size;
+    BakeEstimate estimate;
+};
+
 /// The wanted size, or the smallest one that floats and memory allow if that is larger.
-double feasible(const Mesh& mesh, const ShaderInfo& shader, double wanted,
-                std::uint64_t max_bytes) {
-    double size = std::max(wanted, finest_voxel_size(mesh));
+Attempt feasible(const Mesh& mesh, const ShaderInfo& shader, double wanted,
+                 std::uint64_t max_bytes) {
+    const double size = std::max(wanted, finest_voxel_size(mesh));
+    Attempt attempt{size, estimate_bake(mesh, shader, size)};
     // The estimate goes with 1 / size^2, but not exactly: a few steps settle it.
-    for (int step = 0; step < 8; ++step) {
-        const double bytes = double(estimate_bake(mesh, shader, size).bytes);
-        if (bytes <= double(max_bytes)) break;
-        size *= 1.02 * std::sqrt(bytes / double(max_bytes));
+    for (int step = 0; step < 8 && attempt.estimate.bytes > max_bytes; ++step) {
+        attempt.size *= 1.02 * std::sqrt(double(attempt.estimate.bytes) / double(max_bytes));
+        attempt.estimate = estimate_bake(mesh, shader, attempt.size);
     }
-    return size;
+    return attempt;
 }
 
 }  // namespace
@@ -81,17 +87,15 @@ BoundedBake bake_to_error(const Mesh& mesh, const BoundShader& shader, double ma
     constexpr double close_enough = 1.1;
     BoundedBake result;
     std::optional<Trial> failed, previous, met;
-    std::uint64_t held = 0;  // by the best bake so far
     double wanted = diagonal / 128.0;
     for (;;) {
-        const std::uint64_t left = max_bytes > held ? max_bytes - held : 0;
-        const double size = feasible(mesh, shader.info(), wanted, left);
+        const std::uint64_t left = max_bytes > result.bytes ? max_bytes - result.bytes : 0;
+        const auto [size, estimate] = feasible(mesh, shader.info(), wanted, left);
         if (met && size >= (failed ? failed->size : 1.01 * coarsest)) return result;  // no memory
         if (!met && size > coarsest) out_of_reach(max_error, max_bytes, failed);
         if (failed && !met && size >= 0.98 * failed->size) {
             out_of_reach(max_error, max_bytes, failed);
         }
-        const BakeEstimate estimate = estimate_bake(mesh, shader.info(), size);
         TextureGrid grid = bake_mesh(mesh, shader, size, half,
                                      begin ? begin(size, estimate.voxels) : VoxelsDone{});
         grid.errors = measure_error(mesh, shader, BrickPyramid(grid), size, error_samples, seed);
@@ -100,7 +104,7 @@ BoundedBake bake_to_error(const Mesh& mesh, const BoundShader& shader, double ma
         if (trial.error <= max_error) {
             met = trial;
             result.grid = std::move(grid);
-            held = estimate.bytes;
+            result.bytes = estimate.bytes;
         } else {
             previous = failed;
             failed = trial;

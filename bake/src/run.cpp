@@ -21,6 +21,7 @@ struct Done {
     TextureGrid grid;
     double seconds = 0.0;
     int attempts = 1;
+    std::uint64_t bytes = 0;  ///< estimated
 };
 
 void check_shader(const std::string& name) {
@@ -60,10 +61,12 @@ Done bake_job(const Job& job, const Options& options, std::uint64_t max_memory) 
     Done done;
     if (job.voxel_size) {
         done.grid = bake_at_size(job, options);
+        done.bytes = job.estimate.bytes;
     } else {
         BoundedBake bounded = bake_within_error(job, options, max_memory);
         done.grid = std::move(bounded.grid);
         done.attempts = bounded.attempts;
+        done.bytes = bounded.bytes;
     }
     done.grid.object = job.object->name;
     done.seconds = watch.seconds();
@@ -133,13 +136,11 @@ std::string dry_run(const Job& job, const Options& options) {
             job.object->name);
     }
     const double coarse = std::max(*job.voxel_size, double(bounds(mesh).diagonal()) / 256.0);
-    const std::string file =
-        (std::filesystem::temp_directory_path() / "estara-dry-run.vdb").string();
+    const PendingFile scratch(std::filesystem::temp_directory_path() / "estara-dry-run.vdb");
     const Stopwatch watch;
     const TextureGrid grid = bake_mesh(mesh, *job.shader, coarse, options.file.half);
-    write_vdb(file, {grid}, options.file);
+    write_vdb(scratch.path(), {grid}, options.file);
     const double seconds_per_voxel = watch.seconds() / double(grid.levels.front().voxels());
-    std::filesystem::remove(file);
     return fmt::format("{}: about {} voxels of {:.4g}, {} of memory, {} with writing the file",
                        job.object->name, rounded(job.estimate.voxels), *job.voxel_size,
                        format_bytes(job.estimate.bytes),
@@ -166,8 +167,7 @@ void bake_all_jobs(const std::vector<Job>& jobs, const Options& options, const O
     for (const Job& job : jobs) {
         const std::uint64_t left = options.max_memory > held ? options.max_memory - held : 0;
         bakes.push_back(naming(job, [&] { return bake_job(job, options, left); }));
-        const double size = bakes.back().grid.voxel_size;
-        held += estimate_bake(job.object->mesh, job.shader->info(), size).bytes;
+        held += bakes.back().bytes;
         output.result(describe_bake(bakes.back()));
     }
     std::vector<TextureGrid> grids;

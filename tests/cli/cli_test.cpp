@@ -12,17 +12,6 @@ namespace {
 using test::Ran;
 using test::TemporaryFolder;
 
-std::vector<std::string> cases() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(ESTARA_CASES)) {
-        if (std::filesystem::exists(entry.path() / "command")) {
-            names.push_back(entry.path().filename().string());
-        }
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
     for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size()) {
         text.replace(at, what.size(), by);
@@ -78,7 +67,7 @@ TEST_P(Cli, SaysWhatIsWrittenAndLeavesNothingAfterAFailure) {
     EXPECT_EQ(text, test::text_of(folder + "/out.txt")) << "ESTARA_UPDATE=1 writes it anew";
 }
 
-INSTANTIATE_TEST_SUITE_P(Programs, Cli, ::testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Programs, Cli, ::testing::ValuesIn(test::cases_in(ESTARA_CASES)),
                          [](const auto& named) { return named.param; });
 
 }  // namespace

@@ -17,17 +17,6 @@ using test::TemporaryFolder;
 constexpr float fail = 0.004f;
 constexpr double fail_share = 0.0002, hard_fail = 0.012;
 
-std::vector<std::string> cases() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(ESTARA_CASES)) {
-        if (std::filesystem::exists(entry.path() / "command")) {
-            names.push_back(entry.path().filename().string());
-        }
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 class Golden : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Golden, PictureHasNotChanged) {
@@ -48,7 +37,7 @@ TEST_P(Golden, PictureHasNotChanged) {
     EXPECT_LE(d.max, hard_fail) << advice;
 }
 
-INSTANTIATE_TEST_SUITE_P(Pictures, Golden, ::testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Pictures, Golden, ::testing::ValuesIn(test::cases_in(ESTARA_CASES)),
                          [](const auto& named) { return named.param; });
 
 }  // namespace

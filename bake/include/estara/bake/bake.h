@@ -53,6 +53,7 @@ inline constexpr std::uint64_t error_samples = std::uint64_t{1} << 18;
 struct BoundedBake {
     TextureGrid grid;  ///< errors filled in
     int attempts = 0;
+    std::uint64_t bytes = 0;  ///< that the bake took, by its estimate
 };
 
 /// Told of each attempt's voxel size and number of voxels; gives what to tell of its progress.
