@@ -28,6 +28,7 @@ struct FrameRenderer::Impl {
     RayScene& rays;
     FrameSettings settings;
     std::vector<glm::vec2> pattern;
+    std::vector<std::vector<glm::vec3>> face_normals;  ///< by object
     tbb::enumerable_thread_specific<TileRenderer> tiles;
 
     int columns() const { return (settings.width - 1) / TileRenderer::width + 1; }
@@ -35,7 +36,12 @@ struct FrameRenderer::Impl {
 };
 
 FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSettings& settings)
-    : m_impl(new Impl{scene, rays, settings, sample_pattern(settings.spp, settings.seed), {}}) {}
+    : m_impl(new Impl{scene, rays, settings, sample_pattern(settings.spp, settings.seed), {}, {}}) {
+    m_impl->face_normals.resize(scene.objects.size());
+    tbb::parallel_for(std::size_t{0}, scene.objects.size(), [&](std::size_t i) {
+        m_impl->face_normals[i] = face_normals(scene.objects[i].mesh);
+    });
+}
 
 FrameRenderer::~FrameRenderer() = default;
 
@@ -58,6 +64,7 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
         instances,
         lights,
         shading,
+        my.face_normals,
         my.pattern,
         my.settings};
 

@@ -11,16 +11,31 @@ namespace {
 // A shadow ray ends a little before its light: what holds the light is often exactly there.
 constexpr float shadow_end = 0.9999f;
 
-/// v / |v|, or `otherwise` for a vector without direction. In float where the square is one.
+/// A highlight below this, in the units of the picture (1 is white), is taken as it is, in shadow
+/// or not: a light's error is at most this, a quarter of an 8-bit picture's darkest step.
+constexpr float negligible_gloss = 0x1p-14f;
+
+/// Squares of lengths for which float does.
+constexpr float least_square = 1e-30f, largest_square = 1e30f;
+
+/// v / |v|, or `otherwise` for a vector without direction.
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
-    const float square = glm::dot(v, v);
-    if (square > 1e-30f && square < 1e30f) return v / std::sqrt(square);
     const double length = glm::length(glm::dvec3(v));
     return length > 0.0 && std::isfinite(length) ? glm::vec3(glm::dvec3(v) / length) : otherwise;
 }
 
-bool is_finite(const glm::vec3& v) noexcept {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+ESTARA_KERNEL bool is_finite(float v) noexcept { return v - v == 0.0f; }
+
+template <class T>
+ESTARA_KERNEL glm::vec3 at(const T& planes, int i) noexcept {
+    return {planes[0][i], planes[1][i], planes[2][i]};
+}
+
+template <class T>
+ESTARA_KERNEL void put(T& planes, int i, const glm::vec3& v) noexcept {
+    planes[0][i] = v.x;
+    planes[1][i] = v.y;
+    planes[2][i] = v.z;
 }
 
 /// First float of the channel "color" in a baked record, or -1.
@@ -41,17 +56,20 @@ const ObjectShading& TileRenderer::shading_of(const FrameContext& frame, const G
 
 void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, Film& film) {
     list_pixels(frame, corner);
-    m_sums.assign(m_pixels.size(), {});
+    m_sums = {};
     for (const glm::vec2& offset : frame.pattern) {
         trace(frame, offset);
         group_by_instance(frame);
-        for (const Group& group : m_groups) place_on_surface(frame, group);
-        light(frame);
+        if (m_count == 0) continue;
         for (const Group& group : m_groups) {
+            place_on_surface(frame, group);
             evaluate(frame, group);
-            view(frame, group);
-            accumulate(frame, group);
+            look_up_irradiance(frame, group);
         }
+        std::fill_n(m_samples.Ci[0], 3 * capacity, 0.0f);
+        for (const PosedLight& source : frame.lights) light(frame, source);
+        close(frame);
+        accumulate(frame);
     }
     resolve(frame, film);
 }
@@ -71,13 +89,13 @@ void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corn
 
 void TileRenderer::trace(const FrameContext& frame, const glm::vec2& offset) {
     const Stopwatch time;
-    m_rays.clear();
-    for (const glm::ivec2& pixel : m_pixels) {
-        m_rays.push_back(
-            frame.camera.primary_ray(float(pixel.x) + offset.x, float(pixel.y) + offset.y));
+    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
+        m_x[i] = float(m_pixels[i].x) + offset.x;
+        m_y[i] = float(m_pixels[i].y) + offset.y;
     }
-    frame.rays.intersect(m_rays, m_hits.data());
-    statistics.primary_rays += m_rays.size();
+    frame.camera.primary_rays(m_x, m_y, int(m_pixels.size()), m_rays);
+    frame.rays.intersect(m_rays, m_hits);
+    statistics.primary_rays += m_pixels.size();
     statistics.ray_seconds += time.seconds();
 }
 
@@ -88,103 +106,129 @@ void TileRenderer::group_by_instance(const FrameContext& frame) {
     }
     m_groups.clear();
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        if (m_hits[i].instance == Hit::none) continue;
-        int& group = m_group_of_instance[m_hits[i].instance];
+        if (m_hits.instance[i] == Hit::none) continue;
+        int& group = m_group_of_instance[m_hits.instance[i]];
         if (group < 0) {
             group = int(m_groups.size());
-            m_groups.push_back({m_hits[i].instance, 0, 0});
+            m_groups.push_back({m_hits.instance[i], 0, 0});
         }
         ++m_groups[std::size_t(group)].last;
     }
-    int first = 0;
+    m_count = 0;
     for (Group& group : m_groups) {
         const int size = group.last;
-        group.first = group.last = first;
-        first += size;
+        group.first = group.last = m_count;
+        m_count += size;
     }
-    m_order.resize(std::size_t(first));
-    m_samples.clear();
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        if (m_hits[i].instance == Hit::none) continue;
-        Group& group = m_groups[std::size_t(m_group_of_instance[m_hits[i].instance])];
-        m_order[std::size_t(group.last++)] = std::uint32_t(i);
+        if (m_hits.instance[i] == Hit::none) continue;
+        Group& group = m_groups[std::size_t(m_group_of_instance[m_hits.instance[i]])];
+        m_order[group.last++] = int(i);
     }
     for (const Group& group : m_groups) m_group_of_instance[group.instance] = -1;
-    statistics.samples += m_order.size();
+    m_samples.surface.size = m_count;
+    statistics.samples += std::uint64_t(m_count);
 }
 
 void TileRenderer::place_on_surface(const FrameContext& frame, const Group& group) {
     const PosedInstance& instance = frame.instances[group.instance];
-    const Mesh& mesh = frame.scene.objects[std::size_t(instance.object)].mesh;
-    for (int j = group.first; j < group.last; ++j) {
-        const std::uint32_t i = m_order[std::size_t(j)];
-        const MeshPoint point = mesh_point(mesh, m_hits[i].triangle, m_hits[i].b1, m_hits[i].b2);
-        const glm::vec3 P(instance.world_from_object * glm::vec4(point.P, 1.0f));
-        const Sight sight = frame.camera.sight(P);
-        const glm::vec3 V = sight.V.vec();
-        const glm::vec3 Ng = unit_or(instance.world_from_normal * point.Ng, V);
-        const glm::vec3 N = unit_or(instance.world_from_normal * point.N, Ng);
-        // N_f: the camera decides on the side and on nothing else.
-        const float side = glm::dot(Ng, V) < 0.0f ? -1.0f : 1.0f;
-        m_samples.push_back({int(i), point, P, side * Ng, side * N, sight});
-    }
-}
-
-void TileRenderer::light(const FrameContext& frame) {
-    const std::size_t row = frame.lights.size();
-    m_lights.resize(m_samples.size() * row);
-    std::fill_n(m_light_count.begin(), m_samples.size(), 0);
-    std::fill_n(m_E.begin(), m_samples.size(), glm::vec3(0.0f));
-    for (const PosedLight& source : frame.lights) {
-        find_candidates(source, frame);
-        const Stopwatch time;
-        frame.rays.occluded(m_rays, m_blocked.data());
-        statistics.shadow_rays += m_rays.size();
-        statistics.ray_seconds += time.seconds();
-        for (std::size_t c = 0; c < m_candidates.size(); ++c) {
-            if (m_blocked[c]) continue;  // a light in shadow has Cl = 0 and need not be listed
-            const Candidate& found = m_candidates[c];
-            const std::size_t j = std::size_t(found.sample);
-            m_lights[j * row + std::size_t(m_light_count[j]++)] = found.light;
-            m_E[j] += found.light.Cl * found.cosine;
-        }
-    }
-}
-
-/// Samples that face the light, and a shadow ray for each.
-void TileRenderer::find_candidates(const PosedLight& source, const FrameContext& frame) {
-    m_candidates.clear();
-    m_rays.clear();
-    for (const Group& group : m_groups) {
-        const SurfaceOffset& offset = frame.instances[group.instance].offset;
+    interpolate(frame, group);
+    wide([samples = &m_samples, group, m = instance.world_from_object]() ESTARA_LOOP {
+        const glm::vec3 x(m[0]), y(m[1]), z(m[2]), shift(m[3]);
+#pragma GCC ivdep
         for (int j = group.first; j < group.last; ++j) {
-            const Sample& s = m_samples[std::size_t(j)];
-            const LightSample sample = sample_light(source, s.P);
-            const float cosine = glm::dot(s.N, sample.L);
-            if (!(cosine > 0.0f) || sample.Cl == glm::vec3(0.0f)) continue;
-            const glm::vec3 side = glm::dot(s.Ng, sample.L) < 0.0f ? -s.Ng : s.Ng;
-            const glm::vec3 origin = offset.from(s.P, side, s.point.P);
-            m_candidates.push_back({j, {sample.L, sample.Cl}, cosine});
-            if (std::isfinite(sample.distance)) {
-                m_rays.push_back({origin, source.position - origin, 0.0f, shadow_end});
-            } else {
-                m_rays.push_back({origin, sample.L, 0.0f, sample.distance});
-            }
+            const glm::vec3 P = at(samples->surface.P, j);
+            put(samples->P, j, x * P.x + y * P.y + z * P.z + shift);
         }
+    });
+    frame.camera.sights(m_samples.P[0], group.first, group.last, m_samples.seen.V,
+                        m_samples.distance);
+    turn_normals(instance, group);
+}
+
+/// Object space: mesh_point() for every sample, with the normals left for a wide loop.
+void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
+    const auto object = std::size_t(frame.instances[group.instance].object);
+    const Mesh& mesh = frame.scene.objects[object].mesh;
+    const glm::vec3* const Ng = frame.face_normals[object].data();
+    const glm::vec3* const N = mesh.N.empty() ? nullptr : mesh.N.data();
+    const glm::vec2* const uv = mesh.has_uv() ? mesh.uv.data() : nullptr;
+    SurfaceBatch& surface = m_samples.surface;
+    for (int j = group.first; j < group.last; ++j) {
+        const int i = m_order[j];
+        m_samples.pixel[j] = i;
+        const std::uint32_t triangle = m_hits.triangle[i];
+        const glm::uvec3 t = mesh.triangles[triangle];
+        const float b1 = m_hits.b1[i], b2 = m_hits.b2[i], b0 = 1.0f - b1 - b2;
+        put(surface.P, j, b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z]);
+        put(m_samples.Ng_object, j, Ng[triangle]);
+        put(surface.N, j, N ? b0 * N[t.x] + b1 * N[t.y] + b2 * N[t.z] : Ng[triangle]);
+        const glm::vec2 st = uv ? b0 * uv[t.x] + b1 * uv[t.y] + b2 * uv[t.z] : glm::vec2(0.0f);
+        surface.uv[0][j] = st.x;
+        surface.uv[1][j] = st.y;
+    }
+    wide([samples = &m_samples, group]() ESTARA_LOOP {
+#pragma GCC ivdep
+        for (int j = group.first; j < group.last; ++j) {
+            const glm::vec3 n = at(samples->surface.N, j), g = at(samples->Ng_object, j);
+            const float square = glm::dot(n, n);
+            // Opposite normals cancel; what is left of them then is rounding error.
+            const bool cancelled = !(square > 1e-8f);
+            const float length = std::sqrt(cancelled ? 1.0f : square);
+            put(samples->surface.N, j,
+                {cancelled ? g.x : n.x / length, cancelled ? g.y : n.y / length,
+                 cancelled ? g.z : n.z / length});
+        }
+    });
+    if (shading_of(frame, group).shader->domain() != Domain::surface) return;
+    if (shading_of(frame, group).pyramid) return;  // and what it misses is given its tangent later
+    for (int j = group.first; j < group.last; ++j) {
+        const MeshPoint point{at(surface.P, j),
+                              at(surface.N, j),
+                              at(m_samples.Ng_object, j),
+                              {surface.uv[0][j], surface.uv[1][j]},
+                              m_hits.triangle[m_order[j]]};
+        put(surface.dPdu, j, tangent(mesh, point));
     }
 }
 
-/// Makes sample j the batch's point i. The tangent of a mesh is for shaders of its surface only.
-void TileRenderer::set_point(const FrameContext& frame, const Group& group, int i, int j) {
-    const auto object = std::size_t(frame.instances[group.instance].object);
-    const MeshPoint& point = m_samples[std::size_t(j)].point;
-    const bool needs_tangent = frame.shading[object].shader->domain() == Domain::surface;
-    m_batch.set(i, point.P, point.N, point.uv,
-                needs_tangent ? tangent(frame.scene.objects[object].mesh, point)
-                              : glm::vec3(1.0f, 0.0f, 0.0f));
+/// World space, and on the side of the eye.
+void TileRenderer::turn_normals(const PosedInstance& instance, const Group& group) {
+    const auto turn = [](Samples& to, int j, const glm::vec3& Ng, const glm::vec3& N) ESTARA_LOOP {
+        const glm::vec3 V = to.seen.V[j].vec();
+        // N_f: the camera decides on the side and on nothing else.
+        const bool front = !(glm::dot(Ng, V) < 0.0f);
+        const float side = front ? 1.0f : -1.0f;
+        put(to.Ng, j, side * Ng);
+        put(to.seen.N, j, side * N);
+        to.front[j] = front ? 1 : 0;
+    };
+    int unusual = 0;  // a square beyond float, or a matrix that is singular: nearly never
+    int* const found = &unusual;
+    wide([=, samples = &m_samples, m = instance.world_from_normal]() ESTARA_LOOP {
+        int any = 0;
+#pragma GCC ivdep
+        for (int j = group.first; j < group.last; ++j) {
+            const glm::vec3 Ng = m * at(samples->Ng_object, j);
+            const glm::vec3 N = m * at(samples->surface.N, j);
+            const float g = glm::dot(Ng, Ng), n = glm::dot(N, N);
+            const bool usual = (g > least_square) & (g < largest_square) & (n > least_square) &
+                               (n < largest_square);
+            any |= usual ? 0 : 1;
+            turn(*samples, j, Ng / std::sqrt(g), N / std::sqrt(n));
+        }
+        *found = any;
+    });
+    if (unusual == 0) return;
+    for (int j = group.first; j < group.last; ++j) {
+        const glm::vec3 Ng = unit_or(instance.world_from_normal * at(m_samples.Ng_object, j),
+                                     m_samples.seen.V[j].vec());
+        const glm::vec3 N = unit_or(instance.world_from_normal * at(m_samples.surface.N, j), Ng);
+        turn(m_samples, j, Ng, N);
+    }
 }
 
-/// Fills m_planes, rows by the group's samples.
+/// Fills m_planes, rows by sample.
 void TileRenderer::evaluate(const FrameContext& frame, const Group& group) {
     const ObjectShading& shading = shading_of(frame, group);
     const std::size_t floats = std::size_t(shading.shader->info().baked_floats) * capacity;
@@ -193,19 +237,15 @@ void TileRenderer::evaluate(const FrameContext& frame, const Group& group) {
     if (shading.pyramid) {
         look_up(frame, group, shading);
     } else {
-        m_batch.size = group.last - group.first;
-        m_batch.filter_width = shading.filter_width;
-        for (int i = 0; i < m_batch.size; ++i) set_point(frame, group, i, group.first + i);
-        shading.shader->bake(m_batch, m_planes.data());
+        m_samples.surface.filter_width = shading.filter_width;
+        shading.shader->bake(m_samples.surface, group.first, group.last, m_planes.data());
     }
     statistics.evaluation_seconds += time.seconds();
 }
 
 // The footprint is the minor axis of what a sample covers: at grazing angles it is not divided by
 // the cosine. The major axis would blur the texture across as well as along.
-void TileRenderer::look_up(const FrameContext& frame, const Group& group,
-                           const ObjectShading& shading) {
-    const int floats = shading.pyramid->floats();
+void TileRenderer::find_footprints(const FrameContext& frame, const Group& group) {
     const float scale = frame.instances[group.instance].largest_scale;
     const float width_at_1 =
         frame.camera.pixel_angle() / std::sqrt(float(frame.pattern.size())) / scale;
@@ -213,87 +253,223 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
     m_P.resize(size);
     m_footprints.resize(size);
     for (std::size_t i = 0; i < size; ++i) {
-        const Sample& s = m_samples[std::size_t(group.first) + i];
-        m_P[i] = s.point.P;
-        m_footprints[i] = s.sight.distance * width_at_1;
+        const int j = group.first + int(i);
+        m_P[i] = at(m_samples.surface.P, j);
+        m_footprints[i] = m_samples.distance[j] * width_at_1;
     }
-    shading.pyramid->lookup(m_P, m_footprints, m_planes.data(), capacity, m_found.data());
+}
+
+void TileRenderer::look_up(const FrameContext& frame, const Group& group,
+                           const ObjectShading& shading) {
+    find_footprints(frame, group);
+    shading.pyramid->lookup(m_P, m_footprints, m_planes.data() + group.first, capacity,
+                            m_found.data());
+    const int size = group.last - group.first;
     m_missed.clear();
-    for (std::size_t i = 0; i < size; ++i) {
-        if (!m_found[i]) m_missed.push_back(int(i));
+    for (int i = 0; i < size; ++i) {
+        if (!m_found[std::size_t(i)]) m_missed.push_back(group.first + i);
     }
-    statistics.lookups += std::uint64_t(group.last - group.first);
+    statistics.lookups += std::uint64_t(size);
     statistics.misses += m_missed.size();
     if (m_missed.empty()) return;
 
-    m_batch.size = int(m_missed.size());
-    m_batch.filter_width = shading.filter_width;
-    for (int m = 0; m < m_batch.size; ++m) {
-        set_point(frame, group, m, group.first + m_missed[std::size_t(m)]);
+    const auto object = std::size_t(frame.instances[group.instance].object);
+    const Mesh& mesh = frame.scene.objects[object].mesh;
+    const SurfaceBatch& surface = m_samples.surface;
+    m_missed_batch.size = 0;
+    m_missed_batch.filter_width = shading.filter_width;
+    for (const int j : m_missed) {
+        const MeshPoint point{at(surface.P, j),
+                              at(surface.N, j),
+                              at(m_samples.Ng_object, j),
+                              {surface.uv[0][j], surface.uv[1][j]},
+                              m_hits.triangle[m_order[j]]};
+        m_missed_batch.set(m_missed_batch.size++, point.P, point.N, point.uv, tangent(mesh, point));
     }
     m_missed_planes.resize(m_planes.size());
-    shading.shader->bake(m_batch, m_missed_planes.data());
-    for (int m = 0; m < m_batch.size; ++m) {
-        for (int k = 0; k < floats; ++k) {
-            m_planes[std::size_t(k * capacity + m_missed[std::size_t(m)])] =
-                m_missed_planes[std::size_t(k * capacity + m)];
+    shading.shader->bake(m_missed_batch, m_missed_planes.data());
+    for (std::size_t m = 0; m < m_missed.size(); ++m) {
+        for (int k = 0; k < shading.pyramid->floats(); ++k) {
+            m_planes[std::size_t(k * capacity + m_missed[m])] =
+                m_missed_planes[std::size_t(k * capacity) + m];
         }
     }
 }
 
-void TileRenderer::view(const FrameContext& frame, const Group& group) {
-    const Stopwatch time;
-    m_seen.clear();
-    for (int j = group.first; j < group.last; ++j) {
-        const Sample& s = m_samples[std::size_t(j)];
-        const std::size_t row = std::size_t(j) * frame.lights.size();
-        m_seen.push_back({s.N,
-                          s.sight.V,
-                          m_E[std::size_t(j)],
-                          frame.scene.ambient,
-                          {m_lights.data() + row, std::size_t(m_light_count[std::size_t(j)])}});
+/// Starts E: what is baked, or nothing yet.
+void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& group) {
+    for (int c = 0; c < 3; ++c) {
+        std::fill(m_samples.seen.E[c] + group.first, m_samples.seen.E[c] + group.last, 0.0f);
     }
-    shading_of(frame, group).shader->view(m_planes.data(), m_seen, m_Ci.data());
+    std::fill(m_samples.baked_E + group.first, m_samples.baked_E + group.last, 0);
+    (void)frame;
+}
+
+/// Adds what one light sends to the eye from every sample.
+void TileRenderer::light(const FrameContext& frame, const PosedLight& light) {
+    for (const Group& group : m_groups) reach_samples(frame, group, light);
+    view(frame, true, m_reach.gloss);
+    if (light.shadow && frame.settings.shadows) {
+        want_shadows(frame);
+        trace_shadows(frame, light);
+    } else {
+        std::fill_n(m_reach.visible, m_count, 1);
+    }
+    add_light();
+}
+
+void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
+                                 const PosedLight& light) {
+    const bool shadow = light.shadow && frame.settings.shadows;
+    wide([samples = &m_samples, reach = &m_reach, group, light, shadow,
+          offset = frame.instances[group.instance].offset]() ESTARA_LOOP {
+#pragma GCC ivdep
+        for (int j = group.first; j < group.last; ++j) {
+            const LightSample sample = sample_light(light, at(samples->P, j));
+            const float cosine = glm::dot(at(samples->seen.N, j), sample.L);
+            const bool faces = cosine > 0.0f;
+            put(samples->seen.L, j, sample.L);
+            put(samples->seen.Cl, j,
+                {faces ? sample.Cl.x : 0.0f, faces ? sample.Cl.y : 0.0f,
+                 faces ? sample.Cl.z : 0.0f});
+            reach->cosine[j] = faces ? cosine : 0.0f;
+        }
+        if (!shadow) return;
+        const bool distant = light.type == LightType::directional;
+#pragma GCC ivdep
+        for (int j = group.first; j < group.last; ++j) {
+            const glm::vec3 L = at(samples->seen.L, j), Ng = at(samples->Ng, j);
+            const float side = glm::dot(Ng, L) < 0.0f ? -1.0f : 1.0f;
+            const glm::vec3 origin =
+                offset.from(at(samples->P, j), side * Ng, at(samples->surface.P, j));
+            put(reach->origin, j, origin);
+            put(reach->way, j,
+                {distant ? L.x : light.position.x - origin.x,
+                 distant ? L.y : light.position.y - origin.y,
+                 distant ? L.z : light.position.z - origin.z});
+        }
+    });
+}
+
+void TileRenderer::want_shadows(const FrameContext& frame) {
+    const float least = negligible_gloss / std::exp2(frame.settings.exposure);
+    wide([samples = &m_samples, reach = &m_reach, count = m_count, least]() ESTARA_LOOP {
+#pragma GCC ivdep
+        for (int j = 0; j < count; ++j) {
+            const glm::vec3 gloss = at(reach->gloss, j), Cl = at(samples->seen.Cl, j);
+            const bool glossy = !((std::fabs(gloss.x) <= least) & (std::fabs(gloss.y) <= least) &
+                                  (std::fabs(gloss.z) <= least));
+            const bool reached = (Cl.x > 0.0f) | (Cl.y > 0.0f) | (Cl.z > 0.0f);
+            reach->wanted[j] = reached & (glossy | (samples->baked_E[j] == 0)) ? 1 : 0;
+        }
+    });
+}
+
+void TileRenderer::trace_shadows(const FrameContext& frame, const PosedLight& light) {
+    const bool distant = light.type == LightType::directional;
+    const float end = distant ? std::numeric_limits<float>::infinity() : shadow_end;
+    m_rays.size = 0;
+    for (int j = 0; j < m_count; ++j) {
+        m_reach.visible[j] = 1;
+        if (!m_reach.wanted[j]) continue;
+        m_shadow_sample[m_rays.size] = j;
+        m_rays.push({at(m_reach.origin, j), at(m_reach.way, j), 0.0f, end});
+    }
+    const Stopwatch time;
+    frame.rays.occluded(m_rays, m_blocked.data());
+    statistics.shadow_rays += std::uint64_t(m_rays.size);
+    statistics.ray_seconds += time.seconds();
+    for (int r = 0; r < m_rays.size; ++r) {
+        m_reach.visible[m_shadow_sample[r]] = m_blocked[std::size_t(r)] ? 0 : 1;
+    }
+}
+
+void TileRenderer::add_light() {
+    wide([samples = &m_samples, reach = &m_reach, count = m_count]() ESTARA_LOOP {
+#pragma GCC ivdep
+        for (int j = 0; j < count; ++j) {
+            const bool visible = reach->visible[j] != 0;
+            const bool diffuse = visible & (samples->baked_E[j] == 0);
+            for (int c = 0; c < 3; ++c) {
+                samples->seen.E[c][j] += diffuse ? samples->seen.Cl[c][j] * reach->cosine[j] : 0.0f;
+                samples->Ci[c][j] += visible ? reach->gloss[c][j] : 0.0f;
+            }
+        }
+    });
+}
+
+/// What E and the ambient light make, and the sum.
+void TileRenderer::close(const FrameContext& frame) {
+    m_samples.seen.A = frame.scene.ambient;
+    view(frame, false, m_reach.gloss);
+    wide([samples = &m_samples, reach = &m_reach, count = m_count]() ESTARA_LOOP {
+        for (int c = 0; c < 3; ++c) {
+#pragma GCC ivdep
+            for (int j = 0; j < count; ++j) samples->Ci[c][j] += reach->gloss[c][j];
+        }
+    });
+}
+
+void TileRenderer::view(const FrameContext& frame, bool lit, Planes& Ci) {
+    const Stopwatch time;
+    for (const Group& group : m_groups) {
+        shading_of(frame, group)
+            .shader->view(m_planes.data(), m_samples.seen, group.first, group.last, lit, Ci[0]);
+    }
     statistics.view_seconds += time.seconds();
 }
 
-void TileRenderer::accumulate(const FrameContext& frame, const Group& group) {
-    const int albedo = color_offset(shading_of(frame, group).shader->info());
-    for (int j = group.first; j < group.last; ++j) {
-        const Sample& s = m_samples[std::size_t(j)];
-        const int i = j - group.first;
-        PixelSum& sum = m_sums[std::size_t(s.pixel)];
-        sum.color += m_Ci[std::size_t(i)];
-        sum.N += s.N;
-        sum.P += s.P;
-        sum.depth += s.sight.distance;
-        ++sum.hits;
-        for (int c = 0; albedo >= 0 && c < 3; ++c) {
-            sum.albedo[c] += m_planes[std::size_t((albedo + c) * capacity + i)];
+void TileRenderer::accumulate(const FrameContext& frame) {
+    const Samples& s = m_samples;
+    for (int j = 0; j < m_count; ++j) {
+        const int pixel = s.pixel[j];
+        ++m_sums.hits[pixel];
+        for (int c = 0; c < 3; ++c) m_sums.color[c][pixel] += s.Ci[c][j];
+    }
+    const Aovs& wanted = frame.settings.aovs;
+    if (!wanted.any()) return;
+    for (const Group& group : m_groups) {
+        const int albedo = color_offset(shading_of(frame, group).shader->info());
+        for (int j = group.first; j < group.last; ++j) {
+            const int pixel = s.pixel[j];
+            m_sums.depth[pixel] += s.distance[j];
+            for (int c = 0; c < 3; ++c) {
+                m_sums.N[c][pixel] += s.seen.N[c][j];
+                m_sums.P[c][pixel] += s.P[c][j];
+                if (albedo < 0) continue;
+                m_sums.albedo[c][pixel] += m_planes[std::size_t((albedo + c) * capacity + j)];
+            }
         }
     }
 }
 
 void TileRenderer::resolve(const FrameContext& frame, Film& film) {
     const float samples = float(frame.pattern.size());
-    const float exposure = std::exp2(frame.settings.exposure);
+    const float scale = std::exp2(frame.settings.exposure) / samples;
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        const PixelSum& sum = m_sums[i];
-        if (sum.hits == 0) continue;
-        const std::size_t at = film.index(m_pixels[i].x, m_pixels[i].y);
-        const float hits = float(sum.hits);
-        glm::vec3 color = sum.color * (exposure / samples);
-        glm::vec3 albedo = sum.albedo / hits;
-        if (!is_finite(color) || !is_finite(albedo)) {
+        const auto p = int(i);
+        const std::size_t to = film.index(m_pixels[i].x, m_pixels[i].y);
+        film.color[to] = glm::vec4(0.0f);
+        if (film.aovs.albedo) film.albedo[to] = glm::vec3(0.0f);
+        if (film.aovs.normal) film.N[to] = glm::vec3(0.0f);
+        if (film.aovs.position) film.P[to] = glm::vec3(0.0f);
+        if (film.aovs.depth) film.depth[to] = 0.0f;
+        if (m_sums.hits[i] == 0) continue;
+        const float hits = float(m_sums.hits[i]);
+        glm::vec3 color = at(m_sums.color, p) * scale;
+        glm::vec3 albedo = at(m_sums.albedo, p) / hits;
+        const bool good_color = is_finite(color.x) & is_finite(color.y) & is_finite(color.z);
+        const bool good_albedo = is_finite(albedo.x) & is_finite(albedo.y) & is_finite(albedo.z);
+        if (!good_color || !good_albedo) {
             ++statistics.bad_pixels;
-            if (!is_finite(color)) color = glm::vec3(0.0f);
-            if (!is_finite(albedo)) albedo = glm::vec3(0.0f);
+            if (!good_color) color = glm::vec3(0.0f);
+            if (!good_albedo) albedo = glm::vec3(0.0f);
         }
-        film.color[at] = glm::vec4(color, hits / samples);
-        if (film.aovs.albedo) film.albedo[at] = albedo;
-        if (film.aovs.normal) film.N[at] = sum.N / hits;
-        if (film.aovs.position) film.P[at] = sum.P / hits;
-        if (film.aovs.depth) film.depth[at] = sum.depth / hits;
+        film.color[to] = glm::vec4(color, hits / samples);
+        if (film.aovs.albedo) film.albedo[to] = albedo;
+        if (film.aovs.normal) film.N[to] = at(m_sums.N, p) / hits;
+        if (film.aovs.position) film.P[to] = at(m_sums.P, p) / hits;
+        if (film.aovs.depth) film.depth[to] = m_sums.depth[i] / hits;
     }
 }
 

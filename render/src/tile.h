@@ -22,18 +22,20 @@ struct FrameContext {
     Camera camera;
     std::span<const PosedInstance> instances;
     std::span<const PosedLight> lights;
-    std::span<const ObjectShading> shading;  ///< by object
+    std::span<const ObjectShading> shading;                ///< by object
+    std::span<const std::vector<glm::vec3>> face_normals;  ///< by object
     std::span<const glm::vec2> pattern;
     FrameSettings settings;
 };
 
 /// Renders tiles one after the other; one per thread. Its memory grows to what a tile needs and is
-/// then used again. render/README.md tells the order of what happens to a sample.
+/// then used again. Everything about samples is structure of arrays, and every loop over them that
+/// does arithmetic is wide. render/README.md tells the order of what happens to a sample.
 class TileRenderer {
 public:
     static constexpr int width = 32, height = 16;
     /// A sample in each pixel of a tile fills one batch of a shader.
-    static constexpr int capacity = SurfaceBatch::capacity;
+    static constexpr int capacity = batch_capacity;
     static_assert(width * height == capacity);
 
     /// Renders the pixels from `corner` on and writes them to the film.
@@ -42,66 +44,83 @@ public:
     FrameStatistics statistics;  ///< of everything rendered since it was last reset
 
 private:
-    /// A hit, in world and object space.
-    struct Sample {
-        int pixel;        ///< index into m_pixels
-        MeshPoint point;  ///< object space
-        glm::vec3 P;      ///< world
-        glm::vec3 Ng, N;  ///< world, unit, on the side of the eye
-        Sight sight;
-    };
+    using Plane = float[capacity];
+    using Planes = float[3][capacity];
+
     /// Samples [first, last) lie on one instance.
     struct Group {
         std::uint32_t instance;
         int first, last;
     };
-    /// Sums over a pixel's samples.
-    struct PixelSum {
-        glm::vec3 color{0.0f}, albedo{0.0f}, N{0.0f}, P{0.0f};
-        float depth = 0.0f;
-        int hits = 0;
+    /// The hits of a pass, ordered by group.
+    struct alignas(64) Samples {
+        int pixel[capacity];    ///< index into m_pixels
+        SurfaceBatch surface;   ///< object space
+        Planes Ng_object;       ///< geometric normal, unit, object space
+        Planes P;               ///< world
+        Planes Ng;              ///< world, unit, on the side of the eye
+        Plane distance;         ///< to the eye, world units
+        int front[capacity];    ///< 1: seen from the side that Ng points to on the mesh
+        SeenBatch seen;         ///< E is added up light by light
+        int baked_E[capacity];  ///< 1: E was looked up, shadows and all
+        Planes Ci;              ///< added up light by light
     };
-    /// A sample that a light would reach, and with what.
-    struct Candidate {
-        int sample;
-        Light light;
-        float cosine;
+    /// One light as it reaches the samples.
+    struct alignas(64) Reach {
+        Plane cosine;           ///< <N.L>+
+        Planes origin;          ///< of the shadow ray, world
+        Planes way;             ///< its direction, to the light where that is near
+        Planes gloss;           ///< what view() makes of this light alone, unshadowed
+        int wanted[capacity];   ///< 1: whether the light is visible could change the pixel
+        int visible[capacity];  ///< 1 or 0
+    };
+    /// Sums over a pixel's samples.
+    struct alignas(64) PixelSums {
+        Planes color, albedo, N, P;
+        Plane depth;
+        int hits[capacity];
     };
 
     void list_pixels(const FrameContext& frame, const glm::ivec2& corner);
     void trace(const FrameContext& frame, const glm::vec2& offset);
     void group_by_instance(const FrameContext& frame);
     void place_on_surface(const FrameContext& frame, const Group& group);
-    void light(const FrameContext& frame);
-    void find_candidates(const PosedLight& light, const FrameContext& frame);
-    void set_point(const FrameContext& frame, const Group& group, int i, int j);
+    void interpolate(const FrameContext& frame, const Group& group);
+    void turn_normals(const PosedInstance& instance, const Group& group);
     void evaluate(const FrameContext& frame, const Group& group);
     void look_up(const FrameContext& frame, const Group& group, const ObjectShading& shading);
-    void view(const FrameContext& frame, const Group& group);
-    void accumulate(const FrameContext& frame, const Group& group);
+    void look_up_irradiance(const FrameContext& frame, const Group& group);
+    void find_footprints(const FrameContext& frame, const Group& group);
+    void light(const FrameContext& frame, const PosedLight& light);
+    void reach_samples(const FrameContext& frame, const Group& group, const PosedLight& light);
+    void want_shadows(const FrameContext& frame);
+    void trace_shadows(const FrameContext& frame, const PosedLight& light);
+    void add_light();
+    void close(const FrameContext& frame);
+    void view(const FrameContext& frame, bool lit, Planes& Ci);
+    void accumulate(const FrameContext& frame);
     void resolve(const FrameContext& frame, Film& film);
     const ObjectShading& shading_of(const FrameContext& frame, const Group& group) const;
 
     std::vector<glm::ivec2> m_pixels;
-    std::vector<PixelSum> m_sums;
-    std::vector<Ray> m_rays;
-    std::array<Hit, capacity> m_hits;
+    PixelSums m_sums;
+    Plane m_x, m_y;  ///< where the pixels' rays go through the image
+    RayBatch m_rays;
+    HitBatch m_hits;
     std::vector<int> m_group_of_instance;  ///< -1: not hit in this tile
     std::vector<Group> m_groups;
-    std::vector<Sample> m_samples;       ///< ordered by group
-    std::vector<std::uint32_t> m_order;  ///< hit of each sample
-    std::vector<Candidate> m_candidates;
+    int m_order[capacity];  ///< hit of each sample
+    int m_count = 0;        ///< samples
+    Samples m_samples;
+    Reach m_reach;
+    int m_shadow_sample[capacity];  ///< of each shadow ray
     std::array<std::uint8_t, capacity> m_blocked, m_found;
-    std::vector<Light> m_lights;  ///< one row of as many as the scene has lights for each sample
-    std::array<int, capacity> m_light_count;
-    std::array<glm::vec3, capacity> m_E;
-    SurfaceBatch m_batch;
-    std::vector<float> m_planes, m_missed_planes;
-    std::vector<int> m_missed;
+    std::vector<float> m_planes;  ///< baked records of all samples
     std::vector<glm::vec3> m_P;
     std::vector<float> m_footprints;
-    std::vector<Seen> m_seen;
-    std::array<glm::vec3, capacity> m_Ci;
+    std::vector<int> m_missed;
+    SurfaceBatch m_missed_batch;
+    std::vector<float> m_missed_planes, m_irradiance;
 };
 
 }  // namespace estara

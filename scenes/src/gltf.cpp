@@ -222,6 +222,12 @@ private:
             throw Error(fmt::format("{}: color, intensity and range must not be negative", where));
         }
         if (light.type == LightType::spot) read_cone(from.spot, where, light);
+        if (from.extras.Has("shadow")) {
+            if (!from.extras.Get("shadow").IsBool()) {
+                throw Error(fmt::format("{}: extras \"shadow\" must be true or false", where));
+            }
+            light.shadow = from.extras.Get("shadow").Get<bool>();
+        }
         m_scene.lights.push_back(std::move(light));
     }
 

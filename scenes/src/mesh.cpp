@@ -50,6 +50,10 @@ glm::vec3 tangent_along_u(const Edges& edges, const glm::dvec2& uv1,
     return glm::vec3(t);
 }
 
+glm::vec3 face_normal(const Edges& edges) noexcept {
+    return unit_or(glm::cross(edges.to_1, edges.to_2), glm::vec3(0.0f, 0.0f, 1.0f));
+}
+
 template <class T>
 void feed(XXH3_state_t* state, const std::vector<T>& values) {
     const std::uint64_t count = values.size();
@@ -90,6 +94,14 @@ double area(const Mesh& mesh) {
     return sum;
 }
 
+std::vector<glm::vec3> face_normals(const Mesh& mesh) {
+    std::vector<glm::vec3> normals(mesh.triangles.size());
+    for (std::size_t t = 0; t < normals.size(); ++t) {
+        normals[t] = face_normal(edges_of(mesh, mesh.triangles[t]));
+    }
+    return normals;
+}
+
 MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b2) noexcept {
     const glm::uvec3 t = mesh.triangles[triangle];
     const float b0 = 1.0f - b1 - b2;
@@ -98,7 +110,7 @@ MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b
     MeshPoint point{};
     point.triangle = triangle;
     point.P = b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z];
-    point.Ng = unit_or(glm::cross(edges.to_1, edges.to_2), glm::vec3(0.0f, 0.0f, 1.0f));
+    point.Ng = face_normal(edges);
     point.N = point.Ng;
     if (!mesh.N.empty()) {
         const glm::vec3 n = b0 * mesh.N[t.x] + b1 * mesh.N[t.y] + b2 * mesh.N[t.z];

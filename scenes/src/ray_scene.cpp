@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "estara/scenes/error.h"
+#include "estara/shaders/wide.h"
 
 namespace estara {
 
@@ -90,61 +91,88 @@ bool invertible(const glm::mat4& world_from_object) noexcept {
     return std::isnormal(float(volume));  // Embree divides by it in float
 }
 
-/// Whether a ray can hit anything at all; false for NaN anywhere.
-bool traceable(const Ray& ray) noexcept {
-    const auto finite = [](const glm::vec3& v) {
-        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    };
-    return finite(ray.origin) && finite(ray.direction) && ray.direction != glm::vec3(0.0f) &&
-           ray.tmin < infinity && ray.tmin <= ray.tmax && ray.tmax >= 0.0f;
-}
+/// What Embree cannot be told of a batch's rays, and what it must be told in its own way.
+struct alignas(64) Prepared {
+    int valid[batch_capacity];    ///< -1 or 0: the ray can hit something; no NaN anywhere
+    int octant[batch_capacity];   ///< a bit for each negative component of its direction
+    float scale[batch_capacity];  ///< of the direction: Embree's t times this is the ray's own
+};
 
-/// A power of two that brings a direction into the range that Embree's reciprocals bear; nearly
-/// always 1.
-float direction_scale(const glm::vec3& d) noexcept {
-    const float size = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-    if (size > 1e-6f && size < 1e6f) return 1.0f;
+constexpr bool is_finite(float v) noexcept { return v - v == 0.0f; }
+
+/// A power of two that brings a direction into the range that Embree's reciprocals bear.
+float direction_scale(float size) noexcept {
     return std::ldexp(1.0f, std::clamp(-std::ilogb(size), -126, 127));
 }
 
+void prepare(const RayBatch& rays, Prepared& out) noexcept {
+    const int size = rays.size;
+    const int lanes = (size + packet - 1) / packet * packet;
+    const RayBatch* const in = &rays;
+    Prepared* const to = &out;
+    int unusual = 0;  // directions that are very long or very short: nearly never
+    int* const found = &unusual;
+    wide([=]() ESTARA_LOOP {
+        int any = 0;
+#pragma GCC ivdep
+        for (int i = 0; i < lanes; ++i) {
+            const float x = in->direction[0][i], y = in->direction[1][i], z = in->direction[2][i];
+            const float ax = std::fabs(x), ay = std::fabs(y), az = std::fabs(z);
+            const float tmin = in->tmin[i], tmax = in->tmax[i];
+            const float larger = ax > ay ? ax : ay;
+            const float length = larger > az ? larger : az;
+            const bool finite = is_finite(in->origin[0][i]) & is_finite(in->origin[1][i]) &
+                                is_finite(in->origin[2][i]) & is_finite(x) & is_finite(y) &
+                                is_finite(z);
+            const bool valid = finite & (length > 0.0f) & (tmin < infinity) & (tmin <= tmax) &
+                               (tmax >= 0.0f) & (i < size);
+            to->valid[i] = valid ? -1 : 0;
+            to->octant[i] = (x < 0.0f ? 1 : 0) | (y < 0.0f ? 2 : 0) | (z < 0.0f ? 4 : 0);
+            to->scale[i] = 1.0f;
+            any |= (valid & !((length > 1e-6f) & (length < 1e6f))) ? 1 : 0;
+        }
+        *found = any;
+    });
+    if (unusual == 0) return;
+    for (int i = 0; i < size; ++i) {
+        const float length =
+            std::max({std::abs(rays.direction[0][i]), std::abs(rays.direction[1][i]),
+                      std::abs(rays.direction[2][i])});
+        if (out.valid[i] && !(length > 1e-6f && length < 1e6f)) {
+            out.scale[i] = direction_scale(length);
+        }
+    }
+}
+
 /// Up to 16 rays the way Embree takes them.
-struct Lanes {
+struct Packet {
     alignas(64) int valid[packet];
-    float scale[packet];  ///< of the direction: Embree's t times this is the ray's own
+    bool coherent;  ///< all go into the same octant: what Embree's coherent traversal is good at
 };
 
-void fill(std::span<const Ray> rays, Lanes& lanes, RTCRay16& out) noexcept {
-    const int count = int(rays.size());
+void fill(const RayBatch& rays, const Prepared& prepared, int first, Packet& lanes,
+          RTCRay16& out) noexcept {
+    int any = 0, all = 7;  // bits of octants that some ray has, that every ray has
     for (int i = 0; i < packet; ++i) {
-        const bool valid = i < count && traceable(rays[i]);
-        const Ray& ray = rays[i < count ? i : 0];
-        const float scale = valid ? direction_scale(ray.direction) : 1.0f;
-        lanes.valid[i] = valid ? -1 : 0;
-        lanes.scale[i] = scale;
-        out.org_x[i] = ray.origin.x;
-        out.org_y[i] = ray.origin.y;
-        out.org_z[i] = ray.origin.z;
-        out.dir_x[i] = ray.direction.x * scale;
-        out.dir_y[i] = ray.direction.y * scale;
-        out.dir_z[i] = ray.direction.z * scale;
-        out.tnear[i] = std::max(ray.tmin, 0.0f) / scale;
-        out.tfar[i] = ray.tmax / scale;
+        const int j = first + i;
+        const float scale = prepared.scale[j];
+        lanes.valid[i] = prepared.valid[j];
+        any |= prepared.octant[j] & prepared.valid[j];
+        all &= prepared.octant[j] | ~prepared.valid[j];
+        out.org_x[i] = rays.origin[0][j];
+        out.org_y[i] = rays.origin[1][j];
+        out.org_z[i] = rays.origin[2][j];
+        out.dir_x[i] = rays.direction[0][j] * scale;
+        out.dir_y[i] = rays.direction[1][j] * scale;
+        out.dir_z[i] = rays.direction[2][j] * scale;
+        out.tnear[i] = (rays.tmin[j] > 0.0f ? rays.tmin[j] : 0.0f) / scale;
+        out.tfar[i] = rays.tmax[j] / scale;
         out.time[i] = 0.0f;
         out.mask[i] = ~0u;
         out.id[i] = unsigned(i);
         out.flags[i] = 0;
     }
-}
-
-/// Whether the rays go into the same octant, which is what Embree's coherent traversal is good at.
-bool coherent(const Lanes& lanes, const RTCRay16& rays) noexcept {
-    unsigned seen = 0;  // one bit an octant
-    for (int i = 0; i < packet; ++i) {
-        const int octant = int(rays.dir_x[i] < 0.0f) | int(rays.dir_y[i] < 0.0f) << 1 |
-                           int(rays.dir_z[i] < 0.0f) << 2;
-        if (lanes.valid[i]) seen |= 1u << octant;
-    }
-    return (seen & (seen - 1)) == 0;
+    lanes.coherent = any == all;
 }
 
 RTCIntersectContext context_with(RTCIntersectContextFlags flags) noexcept {
@@ -205,43 +233,82 @@ RayScene::~RayScene() = default;
 
 void RayScene::set_pose(const Pose& pose) { m_impl->set_pose(pose); }
 
-void RayScene::intersect(std::span<const Ray> rays, Hit* hits) const {
-    for (std::size_t first = 0; first < rays.size(); first += packet) {
-        const std::span<const Ray> some =
-            rays.subspan(first, std::min<std::size_t>(packet, rays.size() - first));
-        Lanes lanes;
+void RayScene::intersect(const RayBatch& rays, HitBatch& hits) const {
+    Prepared prepared;
+    prepare(rays, prepared);
+    for (int first = 0; first < rays.size; first += packet) {
+        Packet lanes;
         RTCRayHit16 trace;
-        fill(some, lanes, trace.ray);
+        fill(rays, prepared, first, lanes, trace.ray);
         std::fill_n(trace.hit.geomID, packet, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(trace.hit.instID[0], packet, RTC_INVALID_GEOMETRY_ID);
         // Primary rays take half the time this way (measured on the still life).
         RTCIntersectContext context =
-            context_with(coherent(lanes, trace.ray) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                    : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+            context_with(lanes.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                        : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
         rtcIntersect16(lanes.valid, m_impl->top.get(), &context, &trace);
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            const bool hit = trace.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-            hits[first + i] = hit ? Hit{trace.hit.instID[0][i], trace.hit.primID[i], trace.hit.u[i],
-                                        trace.hit.v[i], trace.ray.tfar[i] * lanes.scale[i]}
-                                  : Hit{};
+        static_assert(Hit::none == RTC_INVALID_GEOMETRY_ID);
+        for (int i = 0; i < packet; ++i) {
+            const int j = first + i;
+            hits.instance[j] = trace.hit.instID[0][i];
+            hits.triangle[j] = trace.hit.primID[i];
+            hits.b1[j] = trace.hit.u[i];
+            hits.b2[j] = trace.hit.v[i];
+            hits.t[j] = trace.ray.tfar[i] * prepared.scale[j];
         }
     }
 }
 
-void RayScene::occluded(std::span<const Ray> rays, std::uint8_t* blocked) const {
-    for (std::size_t first = 0; first < rays.size(); first += packet) {
-        const std::span<const Ray> some =
-            rays.subspan(first, std::min<std::size_t>(packet, rays.size() - first));
-        Lanes lanes;
+void RayScene::occluded(const RayBatch& rays, std::uint8_t* blocked) const {
+    Prepared prepared;
+    prepare(rays, prepared);
+    for (int first = 0; first < rays.size; first += packet) {
+        Packet lanes;
         RTCRay16 trace;
-        fill(some, lanes, trace);
+        fill(rays, prepared, first, lanes, trace);
         // Never coherent: Embree 3.13.5 on AVX-512 then does not return from some packets.
         RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
         rtcOccluded16(lanes.valid, m_impl->top.get(), &context, &trace);
         // Embree says "blocked" by an infinitely negative end of the ray.
-        for (std::size_t i = 0; i < some.size(); ++i)
+        const int count = std::min(packet, rays.size - first);
+        for (int i = 0; i < count; ++i) {
             blocked[first + i] = lanes.valid[i] && trace.tfar[i] < 0.0f;
+        }
     }
+}
+
+namespace {
+
+/// Calls trace(batch, first) for as many batches as the rays fill.
+template <class Trace>
+void in_batches(std::span<const Ray> rays, const Trace& trace) {
+    const auto batch = std::make_unique<RayBatch>();
+    for (std::size_t first = 0; first < rays.size(); first += RayBatch::capacity) {
+        batch->size = 0;
+        const std::size_t last = std::min(first + RayBatch::capacity, rays.size());
+        for (std::size_t i = first; i < last; ++i) batch->push(rays[i]);
+        trace(*batch, first);
+    }
+}
+
+}  // namespace
+
+void RayScene::intersect(std::span<const Ray> rays, Hit* hits) const {
+    const auto found = std::make_unique<HitBatch>();
+    in_batches(rays, [&](const RayBatch& batch, std::size_t first) {
+        intersect(batch, *found);
+        for (int i = 0; i < batch.size; ++i) {
+            const bool hit = found->instance[i] != Hit::none;
+            hits[first + std::size_t(i)] = hit ? Hit{found->instance[i], found->triangle[i],
+                                                     found->b1[i], found->b2[i], found->t[i]}
+                                               : Hit{};
+        }
+    });
+}
+
+void RayScene::occluded(std::span<const Ray> rays, std::uint8_t* blocked) const {
+    in_batches(rays,
+               [&](const RayBatch& batch, std::size_t first) { occluded(batch, blocked + first); });
 }
 
 }  // namespace estara

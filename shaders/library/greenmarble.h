@@ -78,7 +78,7 @@ struct Greenmarble {
         return {mix(substrate, veincolor, veins * mask)};
     }
 
-    glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
+    ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return plastic(b.color, Ka, Kd, Ks, roughness, glm::vec3(1.0f), seen);
     }
 };

@@ -40,7 +40,7 @@ struct Plastic {
 
     ESTARA_KERNEL Baked bake(const SurfacePoint&) const noexcept { return {Cs}; }
 
-    glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
+    ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return plastic(b.color, Ka, Kd, Ks, roughness, specularcolor, seen);
     }
 };

@@ -57,7 +57,7 @@ struct Stone {
         return {mix(graincolor, Cs, std::floor(shades * t + 0.5f) / shades)};
     }
 
-    glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
+    ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return plastic(b.color, Ka, Kd, Ks, roughness, specularcolor, seen);
     }
 };

@@ -53,7 +53,7 @@ struct Wood {
         return {mix(lightwood, darkwood, r), 0.3f * r + 0.7f};
     }
 
-    glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
+    ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return matte(b.color, Ka, Kd, seen) + b.specular * Ks * specular(seen, roughness);
     }
 };

@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 
 #include <cstddef>
-#include <span>
 #include <tuple>
 #include <vector>
 
@@ -13,31 +12,15 @@
 
 namespace estara::detail {
 
+/// bake() and view() over a batch, as BoundShader has them. Defined in loops.h and compiled once
+/// per shader (bound.cpp.in), because that is slow.
 template <class S>
-using BakeFunction = void (*)(const S&, const SurfaceBatch&, float*) noexcept;
-
-/// The widest version of bake over a batch that this machine runs, but none wider than `limit`.
-/// Defined in bake_all.h and compiled once per shader (bound.cpp.in), because it is slow to
-/// compile.
-template <class S>
-BakeFunction<S> bake_function(InstructionSet limit) noexcept;
-
-/// Reads a record from column i of planes.
-template <class S, std::size_t channel = 0, int plane = 0>
-void load(typename S::Baked& baked, const float* planes, std::size_t i) noexcept {
-    constexpr auto channels = S::channels();
-    if constexpr (channel < std::tuple_size_v<decltype(channels)>) {
-        auto& value = baked.*std::get<channel>(channels).member;
-        const float* const column = planes + plane * SurfaceBatch::capacity + i;
-        if constexpr (std::is_same_v<decltype(value), float&>) {
-            value = column[0];
-            load<S, channel + 1, plane + 1>(baked, planes, i);
-        } else {
-            value = {column[0], column[SurfaceBatch::capacity], column[2 * SurfaceBatch::capacity]};
-            load<S, channel + 1, plane + 3>(baked, planes, i);
-        }
-    }
-}
+struct Loops {
+    static void bake(const S& shader, const SurfaceBatch& in, int first, int last, float* planes,
+                     InstructionSet limit) noexcept;
+    static void view(const S& shader, const float* planes, const SeenBatch& seen, int first,
+                     int last, bool lit, float* Ci, InstructionSet limit) noexcept;
+};
 
 inline glm::vec3 as_vec3(float v) { return {v, 0.0f, 0.0f}; }
 inline glm::vec3 as_vec3(int v) { return {float(v), 0.0f, 0.0f}; }
@@ -86,7 +69,7 @@ class Bound final : public BoundShader {
 public:
     Bound(const ShaderInfo& info, const std::vector<glm::vec3>& values, bool has_uv,
           InstructionSet limit)
-        : m_info(info), m_bake(bake_function<S>(limit)) {
+        : m_info(info), m_limit(limit) {
         std::size_t i = 0;
         std::apply([&](const auto&... p) { (assign(m_shader.*p.member, values[i++]), ...); },
                    S::params());
@@ -103,22 +86,18 @@ public:
         return v;
     }
 
-    void bake(const SurfaceBatch& in, float* planes) const noexcept override {
-        m_bake(m_shader, in, planes);
+    void bake(const SurfaceBatch& in, int first, int last, float* planes) const noexcept override {
+        Loops<S>::bake(m_shader, in, first, last, planes, m_limit);
     }
 
-    void view(const float* planes, std::span<const Seen> seen,
-              glm::vec3* Ci) const noexcept override {
-        typename S::Baked baked;
-        for (std::size_t i = 0; i < seen.size(); ++i) {
-            load<S>(baked, planes, i);
-            Ci[i] = m_shader.view(baked, seen[i]);
-        }
+    void view(const float* planes, const SeenBatch& seen, int first, int last, bool lit,
+              float* Ci) const noexcept override {
+        Loops<S>::view(m_shader, planes, seen, first, last, lit, Ci, m_limit);
     }
 
 private:
     const ShaderInfo& m_info;
-    BakeFunction<S> m_bake;
+    InstructionSet m_limit;
     S m_shader;
 };
 

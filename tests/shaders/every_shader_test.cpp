@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <thread>
@@ -238,11 +239,16 @@ TEST_P(EveryShader, UsesEveryViewParameter) {
     const std::vector<float> planes = test::bake(*bound(), test::random_batch(13));
     const glm::vec3 up(0.0f, 0.0f, 1.0f), aside(0.07f, 0.0f, std::sqrt(1.0f - 0.07f * 0.07f));
     const std::vector<Light> lights{{aside, glm::vec3(1.0f)}};
-    const std::vector<Seen> seen{test::seen(up, up, lights)};
+    const auto seen = std::make_unique<SeenBatch>();
+    test::set(*seen, 0, test::seen(up, up, lights));
     const auto color = [&](const std::vector<Setting>& settings) {
-        glm::vec3 Ci(test::untouched);
-        bound(settings)->view(planes.data(), seen, &Ci);
-        return Ci;
+        std::vector<float> colors;
+        for (const bool lit : {false, true}) {
+            std::vector<float> Ci(3 * capacity, test::untouched);
+            bound(settings)->view(planes.data(), *seen, 0, 1, lit, Ci.data());
+            for (int c = 0; c < 3; ++c) colors.push_back(Ci[std::size_t(c * capacity)]);
+        }
+        return colors;
     };
     test::Random random(14);
     for (const ParamInfo& param : info().params) {
@@ -251,23 +257,44 @@ TEST_P(EveryShader, UsesEveryViewParameter) {
     }
 }
 
+/// Random points, each under one random light.
+std::unique_ptr<SeenBatch> random_views(std::uint32_t seed) {
+    test::Random random(seed);
+    auto batch = std::make_unique<SeenBatch>();
+    for (int i = 0; i < capacity; ++i) {
+        const glm::vec3 N = random.direction(), V = random.direction(), L = random.direction();
+        const Light light{L, glm::vec3(random.unit(), random.unit(), random.unit())};
+        test::set(*batch, i, test::seen(N, V, {&light, 1}));
+    }
+    return batch;
+}
+
 TEST_P(EveryShader, ViewIsFiniteAndNeverDarkerThanBlack) {
     const BoundShaderPtr shader = bound();
     const std::vector<float> planes = test::bake(*shader, test::random_batch(15));
-    test::Random random(16);
-    std::vector<std::vector<Light>> lights(capacity);
-    std::vector<Seen> seen;
-    for (std::vector<Light>& some : lights) {
-        for (int i = int(random.within(0.0f, 4.0f)); i > 0; --i) {
-            some.push_back(
-                {random.direction(), glm::vec3(random.unit(), random.unit(), random.unit())});
-        }
-        seen.push_back(test::seen(random.direction(), random.direction(), some));
+    const auto seen = random_views(16);
+    for (const bool lit : {false, true}) {
+        std::vector<float> Ci(3 * capacity, test::untouched);
+        shader->view(planes.data(), *seen, 0, capacity, lit, Ci.data());
+        for (const float c : Ci) ASSERT_TRUE(c >= 0.0f && c < 100.0f) << c;
     }
-    std::vector<glm::vec3> Ci(capacity, glm::vec3(test::untouched));
-    shader->view(planes.data(), seen, Ci.data());
-    for (const glm::vec3& color : Ci) {
-        for (int c = 0; c < 3; ++c) ASSERT_TRUE(color[c] >= 0.0f && color[c] < 100.0f) << color[c];
+}
+
+TEST_P(EveryShader, ViewHasTheSameBitsOnEveryInstructionSetAndInEveryPart) {
+    const std::vector<float> planes = test::bake(*bound(), test::random_batch(17));
+    const auto seen = random_views(18);
+    for (const bool lit : {false, true}) {
+        std::vector<float> expected(3 * capacity, test::untouched);
+        bound()->view(planes.data(), *seen, 0, capacity, lit, expected.data());
+        for (const InstructionSet limit : {InstructionSet::baseline, InstructionSet::sse42,
+                                           InstructionSet::avx2, InstructionSet::avx512}) {
+            const BoundShaderPtr shader = bind_shader(info().name, {}, true, limit).shader;
+            std::vector<float> Ci(3 * capacity, test::untouched);
+            for (const auto& [first, last] : {std::pair{0, 1}, {1, 38}, {38, 500}, {500, 512}}) {
+                shader->view(planes.data(), *seen, first, last, lit, Ci.data());
+            }
+            EXPECT_TRUE(test::same_bits(Ci, expected)) << int(limit);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "estara/shaders/seen.h"
+#include "estara/shaders/batch.h"
 
 namespace estara {
 
@@ -14,9 +14,25 @@ class Camera {
 public:
     /// @param v  unit vector towards the eye
     static ViewDirection direction(const glm::vec3& v) { return ViewDirection(v); }
+    static void set(ViewDirections& V, int i, const glm::vec3& v) {
+        for (int c = 0; c < 3; ++c) V.m_v[c][i] = v[c];
+    }
 };
 
 namespace test {
+
+/// Makes point i of a batch the one that is seen so; of several lights the first is taken.
+inline void set(SeenBatch& batch, int i, const Seen& seen) {
+    Camera::set(batch.V, i, seen.V.vec());
+    const Light light = seen.lights.empty() ? Light{{0, 0, 1}, {0, 0, 0}} : seen.lights[0];
+    for (int c = 0; c < 3; ++c) {
+        batch.N[c][i] = seen.N[c];
+        batch.E[c][i] = seen.E[c];
+        batch.L[c][i] = light.L[c];
+        batch.Cl[c][i] = light.Cl[c];
+    }
+    batch.A = seen.A;
+}
 
 /// A point seen along V with some light on it; N, V and the lights' L are unit vectors.
 inline Seen seen(const glm::vec3& N, const glm::vec3& V, std::span<const Light> lights) {

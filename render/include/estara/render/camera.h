@@ -30,6 +30,14 @@ public:
     /// the way back along the viewing axis.
     Sight sight(const glm::vec3& P) const noexcept;
 
+    /// The rays through n points of the image, as primary_ray().
+    /// @param n  at most RayBatch::capacity
+    void primary_rays(const float* x, const float* y, int n, RayBatch& rays) const noexcept;
+
+    /// sight() of points [first, last), given as three planes of batch_capacity floats.
+    void sights(const float* P, int first, int last, ViewDirections& V,
+                float* distance) const noexcept;
+
     /// Angle between neighbouring pixels at the image centre, radians.
     float pixel_angle() const noexcept { return m_pose.pixel_angle(m_height); }
 

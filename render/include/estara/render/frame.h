@@ -27,6 +27,7 @@ struct FrameSettings {
     int spp = 4;                    ///< samples a pixel, >= 1
     std::uint32_t seed = 0;         ///< shifts the sample pattern
     float exposure = 0.0f;          ///< EV: colours times 2^exposure
+    bool shadows = true;     ///< false: nothing casts a shadow, whatever the lights say
     Aovs aovs;
 };
 

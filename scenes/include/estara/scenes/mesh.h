@@ -45,6 +45,9 @@ struct MeshPoint {
     std::uint32_t triangle;  ///< that it lies on
 };
 
+/// MeshPoint::Ng of every triangle, for those who ask for many points.
+std::vector<glm::vec3> face_normals(const Mesh& mesh);
+
 /// The point (1 - b1 - b2) P0 + b1 P1 + b2 P2 of a triangle.
 /// @param b1, b2  barycentric coordinates as Embree's u and v: >= 0, b1 + b2 <= 1
 MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b2) noexcept;

@@ -25,6 +25,32 @@ struct Hit {
     float t = 0.0f;
 };
 
+/// Rays as structure of arrays: what packets are cut from. Neighbours in it should be neighbours in
+/// space.
+struct alignas(64) RayBatch {
+    static constexpr int capacity = batch_capacity;
+
+    float origin[3][capacity];     ///< world
+    float direction[3][capacity];  ///< world, any length > 0
+    float tmin[capacity], tmax[capacity];
+    int size = 0;  ///< rays in use, [0, capacity]
+
+    void push(const Ray& ray) noexcept {
+        for (int c = 0; c < 3; ++c) {
+            origin[c][size] = ray.origin[c];
+            direction[c][size] = ray.direction[c];
+        }
+        tmin[size] = ray.tmin;
+        tmax[size++] = ray.tmax;
+    }
+};
+
+/// As Hit, for each ray of a batch.
+struct alignas(64) HitBatch {
+    std::uint32_t instance[batch_capacity], triangle[batch_capacity];
+    float b1[batch_capacity], b2[batch_capacity], t[batch_capacity];
+};
+
 /// The scene's geometry in a two-level acceleration structure: one per mesh in object space, one
 /// over the instances, rebuilt for each frame.
 class RayScene {
@@ -41,11 +67,14 @@ public:
     /// nothing) or not finite cannot be hit.
     void set_pose(const Pose& pose);
 
-    /// Nearest hits, hits[i] for rays[i]; rays that start near each other and go the same way are
-    /// fastest (packets of 16). Any thread, any number at once. Rays with NaN hit nothing.
+    /// Nearest hits; rays that start near each other and go the same way are fastest (packets of
+    /// 16). Any thread, any number at once. Rays with NaN hit nothing.
+    void intersect(const RayBatch& rays, HitBatch& hits) const;
+    /// The same, hits[i] for rays[i].
     void intersect(std::span<const Ray> rays, Hit* hits) const;
 
-    /// blocked[i] = 1 if anything lies between tmin and tmax of rays[i], else 0. As intersect().
+    /// blocked[i] = 1 if anything lies between tmin and tmax of ray i, else 0. As intersect().
+    void occluded(const RayBatch& rays, std::uint8_t* blocked) const;
     void occluded(std::span<const Ray> rays, std::uint8_t* blocked) const;
 
 private:

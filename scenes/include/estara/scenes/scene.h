@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "estara/scenes/light.h"
 #include "estara/scenes/mesh.h"
 #include "estara/shaders/registry.h"
 
@@ -67,8 +68,6 @@ struct SceneCamera {
     float yfov = 0.8f;  ///< vertical field of view, radians, (0, pi)
 };
 
-enum class LightType { directional, point, spot };
-
 /// KHR_lights_punctual: shines along its node's -z.
 struct SceneLight {
     std::string name;
@@ -78,6 +77,7 @@ struct SceneLight {
     float intensity = 1.0f;  ///< lux (directional) or candela, as the file says; photometric
     float range = 0.0f;      ///< beyond it the light has no effect; 0: no limit
     float inner_cone = 0.0f, outer_cone = 0.7853982f;  ///< radians from the axis, spots only
+    bool shadow = true;                                ///< extras {"shadow": false} switch it off
 };
 
 /// Frame f shows the time f / fps.
@@ -112,27 +112,7 @@ Pose pose_at(const Scene& scene, double time);
 /// 1-1 for a scene without animation.
 FrameRange animated_frames(const Scene& scene, double fps);
 
-/// A light at one time, ready to illuminate.
-struct PosedLight {
-    LightType type;
-    glm::vec3 position;   ///< world; not for directional lights
-    glm::vec3 direction;  ///< unit, the way it shines, world
-    glm::vec3 color;      ///< color * intensity / 683: watts per steradian (m^2 for directional)
-    float range, cos_inner, cos_outer;
-};
-
 std::vector<PosedLight> posed_lights(const Scene& scene, const Pose& pose);
-
-/// What of a light arrives at a point if nothing is in between.
-struct LightSample {
-    glm::vec3 L{0.0f};      ///< unit, from the point to the light, world
-    float distance = 0.0f;  ///< to the light; infinity for directional lights
-    glm::vec3 Cl{0.0f};  ///< irradiance at normal incidence / pi; 0 outside cone and range, and at
-                         ///< the light itself
-};
-
-/// Attenuation as KHR_lights_punctual recommends (inverse square, windowed by range; spot cone).
-LightSample sample_light(const PosedLight& light, const glm::vec3& point) noexcept;
 
 /// A camera's geometry at one time: a pinhole, world space.
 struct PinholePose {
@@ -142,7 +122,11 @@ struct PinholePose {
 
     /// Unnormalised direction through the image at (x, y) in pixels, (0, 0) the upper left corner:
     /// its component along forward is 1.
-    glm::vec3 direction(float x, float y, int width, int height) const noexcept;
+    ESTARA_KERNEL glm::vec3 direction(float x, float y, int width, int height) const noexcept {
+        const float pixel = 2.0f * tan_half_yfov / float(height);
+        return forward + right * ((x - 0.5f * float(width)) * pixel) +
+               up * ((0.5f * float(height) - y) * pixel);
+    }
 
     /// Angle between neighbouring pixels at the image centre, radians (the largest in the image).
     float pixel_angle(int height) const noexcept;

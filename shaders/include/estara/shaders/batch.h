@@ -3,11 +3,13 @@
 
 #include <glm/glm.hpp>
 
+#include "estara/shaders/seen.h"
+
 namespace estara {
 
 /// Up to 512 = 8^3 points that share one filter width. Row stride is `capacity`, whatever `size`.
 struct alignas(64) SurfaceBatch {
-    static constexpr int capacity = 512;
+    static constexpr int capacity = batch_capacity;
 
     float P[3][capacity];
     float N[3][capacity];
@@ -27,6 +29,20 @@ struct alignas(64) SurfaceBatch {
         uv[0][i] = st.x;
         uv[1][i] = st.y;
     }
+};
+
+/// As many points as one camera sees them: Seen for each, with the same light or with none. The
+/// light of several is a sum: what a point sends to the eye is linear in (E, A, lights), tested for
+/// every shader.
+struct alignas(64) SeenBatch {
+    static constexpr int capacity = batch_capacity;
+
+    float N[3][capacity];
+    ViewDirections V;
+    float E[3][capacity];
+    float L[3][capacity];   ///< of the light, unit, for every point, also where Cl is 0
+    float Cl[3][capacity];  ///< 0 where the light does not reach
+    glm::vec3 A{0.0f};
 };
 
 }  // namespace estara

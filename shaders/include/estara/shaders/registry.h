@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "estara/shaders/batch.h"
-#include "estara/shaders/seen.h"
+#include "estara/shaders/wide.h"
 
 namespace estara {
 
@@ -30,9 +30,6 @@ std::string_view to_string(Unit unit) noexcept;
 std::string to_string(float value);
 /// Likewise, "0.3,0.12,0.03".
 std::string to_string(const glm::vec3& value);
-
-/// What bake() is compiled for; the bits of its results are the same on all of them.
-enum class InstructionSet { baseline, sse42, avx2, avx512 };
 
 /// What decides a shader's colour.
 enum class Domain {
@@ -91,15 +88,23 @@ public:
     /// Value of every parameter, in the order of info().params.
     virtual std::vector<glm::vec3> values() const = 0;
 
-    /// The view-independent part of a batch: planes[k * SurfaceBatch::capacity + i] becomes float k
-    /// (of info().baked_floats) of point i. Bit-identical whatever the batch a point is in and
-    /// whatever instruction set the machine has.
-    virtual void bake(const SurfaceBatch& in, float* planes) const noexcept = 0;
+    /// The view-independent part of points [first, last) of a batch: float k (of
+    /// info().baked_floats) of point i becomes planes[k * SurfaceBatch::capacity + i].
+    /// Bit-identical whatever the batch a point is in and whatever instruction set the machine has.
+    virtual void bake(const SurfaceBatch& in, int first, int last,
+                      float* planes) const noexcept = 0;
+    /// Of all its points.
+    void bake(const SurfaceBatch& in, float* planes) const noexcept {
+        bake(in, 0, in.size, planes);
+    }
 
-    /// The view-dependent part: Ci[i] = outgoing colour of point i of planes as bake() lays them
-    /// out, seen as seen[i].
-    virtual void view(const float* planes, std::span<const Seen> seen,
-                      glm::vec3* Ci) const noexcept = 0;
+    /// The view-dependent part of points [first, last) of planes as bake() lays them out: their
+    /// outgoing colour, linear Rec. 709. The whole of it is a sum: what E and A make, and what each
+    /// light makes alone.
+    /// @param lit  the batch's light alone, E and A count as 0; or E and A, and no light
+    /// @param Ci   three planes of SeenBatch::capacity floats
+    virtual void view(const float* planes, const SeenBatch& seen, int first, int last, bool lit,
+                      float* Ci) const noexcept = 0;
 };
 
 using BoundShaderPtr = std::shared_ptr<const BoundShader>;
@@ -125,7 +130,8 @@ struct BindResult {
 /// Gives a shader its parameters: the defaults, overridden by settings.
 /// @param name    must exist: check with find_shader() first (an unknown one is a Problem too)
 /// @param has_uv  whether the mesh has texture coordinates: cobblestone chooses its variant by it
-/// @param limit   bake() uses the widest instruction set of the machine, but none wider than this
+/// @param limit   bake() and view() use the widest instruction set of the machine, but none wider
+/// than this
 BindResult bind_shader(std::string_view name, std::span<const Setting> settings, bool has_uv,
                        InstructionSet limit = InstructionSet::avx512);
 

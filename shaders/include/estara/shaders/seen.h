@@ -16,8 +16,24 @@ public:
 
 private:
     friend class Camera;
+    friend class ViewDirections;
     explicit ViewDirection(const glm::vec3& v) noexcept : m_v(v) {}
     glm::vec3 m_v;
+};
+
+/// Points in a batch, at most.
+inline constexpr int batch_capacity = 512;
+
+/// A ViewDirection for each point of a batch, which only a Camera can make either.
+class ViewDirections {
+public:
+    ViewDirection operator[](int i) const noexcept {
+        return ViewDirection({m_v[0][i], m_v[1][i], m_v[2][i]});
+    }
+
+private:
+    friend class Camera;
+    float m_v[3][batch_capacity];
 };
 
 /// One light as a surface point receives it.

@@ -1,0 +1,124 @@
+// The loops over a batch: scalar code that the compiler makes wide, once for every instruction set.
+#pragma once
+
+#include "bound.h"
+#include "estara/shaders/noise.h"
+#include "estara/shaders/shader.h"
+#include "estara/shaders/wide.h"
+
+namespace estara::detail {
+
+/// Writes a record to column i of planes, channel by channel. (Not by copying its bytes: that
+/// becomes one 16-byte move, which keeps the loop scalar.)
+template <class S, std::size_t channel = 0, int plane = 0>
+ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i) noexcept {
+    constexpr auto channels = S::channels();
+    if constexpr (channel < std::tuple_size_v<decltype(channels)>) {
+        const auto& value = baked.*std::get<channel>(channels).member;
+        float* const column = planes + plane * SurfaceBatch::capacity + i;
+        if constexpr (std::is_same_v<decltype(value), const float&>) {
+            column[0] = value;
+            store<S, channel + 1, plane + 1>(baked, planes, i);
+        } else {
+            column[0 * SurfaceBatch::capacity] = value.x;
+            column[1 * SurfaceBatch::capacity] = value.y;
+            column[2 * SurfaceBatch::capacity] = value.z;
+            store<S, channel + 1, plane + 3>(baked, planes, i);
+        }
+    }
+}
+
+ESTARA_KERNEL SurfacePoint point_of(const SurfaceBatch& in, int i, float filter_width,
+                                    float octave_sum) noexcept {
+    return {{in.P[0][i], in.P[1][i], in.P[2][i]},
+            {in.N[0][i], in.N[1][i], in.N[2][i]},
+            {in.uv[0][i], in.uv[1][i]},
+            {in.dPdu[0][i], in.dPdu[1][i], in.dPdu[2][i]},
+            filter_width,
+            octave_sum};
+}
+
+/// The scalar loops that the compiler makes wide. The shader and what is uniform over the batch are
+/// copied first: a store to planes could otherwise alias them.
+template <class S>
+ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, int last,
+                             float* __restrict planes) noexcept {
+    const float filter_width = in.filter_width;
+    if constexpr (HasOctaves<S>) {
+        float sums[SurfaceBatch::capacity] = {};
+        const int octaves = octaves_for(filter_width * octave_frequency_of(shader));
+        for (int k = 0; k < octaves; ++k) {
+            for (int i = first; i < last; ++i) {
+                sums[i] += shader.octave(point_of(in, i, filter_width, 0.0f), k);
+            }
+        }
+        for (int i = first; i < last; ++i) {
+            store<S>(shader.bake(point_of(in, i, filter_width, sums[i])), planes, i);
+        }
+    } else {
+        for (int i = first; i < last; ++i) {
+            store<S>(shader.bake(point_of(in, i, filter_width, 0.0f)), planes, i);
+        }
+    }
+}
+
+/// Reads a record from column i of planes.
+template <class S, std::size_t channel = 0, int plane = 0>
+ESTARA_KERNEL void load(typename S::Baked& baked, const float* planes, int i) noexcept {
+    constexpr auto channels = S::channels();
+    if constexpr (channel < std::tuple_size_v<decltype(channels)>) {
+        auto& value = baked.*std::get<channel>(channels).member;
+        const float* const column = planes + plane * SurfaceBatch::capacity + i;
+        if constexpr (std::is_same_v<decltype(value), float&>) {
+            value = column[0];
+            load<S, channel + 1, plane + 1>(baked, planes, i);
+        } else {
+            value = {column[0], column[SurfaceBatch::capacity], column[2 * SurfaceBatch::capacity]};
+            load<S, channel + 1, plane + 3>(baked, planes, i);
+        }
+    }
+}
+
+/// @tparam lit  the batch's light alone, or what E and A make
+template <bool lit, class S>
+ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatch& seen, int first,
+                             int last, float* __restrict Ci) noexcept {
+    const glm::vec3 A = lit ? glm::vec3(0.0f) : seen.A;
+    constexpr int stride = SeenBatch::capacity;
+#pragma GCC ivdep
+    for (int i = first; i < last; ++i) {
+        typename S::Baked baked;
+        load<S>(baked, planes, i);
+        const Light light{{seen.L[0][i], seen.L[1][i], seen.L[2][i]},
+                          {seen.Cl[0][i], seen.Cl[1][i], seen.Cl[2][i]}};
+        const Seen one{{seen.N[0][i], seen.N[1][i], seen.N[2][i]},
+                       seen.V[i],
+                       lit ? glm::vec3(0.0f) : glm::vec3(seen.E[0][i], seen.E[1][i], seen.E[2][i]),
+                       A,
+                       std::span<const Light>(&light, lit ? 1 : 0)};
+        const glm::vec3 color = shader.view(baked, one);
+        Ci[i] = color.x;
+        Ci[stride + i] = color.y;
+        Ci[2 * stride + i] = color.z;
+    }
+}
+
+template <class S>
+void Loops<S>::bake(const S& shader, const SurfaceBatch& in, int first, int last, float* planes,
+                    InstructionSet limit) noexcept {
+    wide([=, &in]() ESTARA_LOOP { bake_loop(shader, in, first, last, planes); }, limit);
+}
+
+template <class S>
+void Loops<S>::view(const S& shader, const float* planes, const SeenBatch& seen, int first,
+                    int last, bool lit, float* Ci, InstructionSet limit) noexcept {
+    if (lit) {
+        wide([=, &seen]() ESTARA_LOOP { view_loop<true>(shader, planes, seen, first, last, Ci); },
+             limit);
+    } else {
+        wide([=, &seen]() ESTARA_LOOP { view_loop<false>(shader, planes, seen, first, last, Ci); },
+             limit);
+    }
+}
+
+}  // namespace estara::detail
