@@ -20,6 +20,7 @@ namespace {
 
 constexpr Raster raster{1280, 720};
 constexpr int round_count = 11;
+constexpr double max_voxels = 4e6;  ///< of an object
 /// RMSE of grids against direct evaluation; tests/README.md, "Image error".
 constexpr double allowed_rmse = 0.01;
 
@@ -52,18 +53,19 @@ Scene marble_scene(const std::filesystem::path& folder) {
     return scene;
 }
 
-/// Every object baked with the voxels that estara-bake would choose.
+/// Every object baked with the voxels that estara-bake would choose, or with larger ones where that
+/// would be more than max_voxels: the backdrop alone would be 330 million.
 std::vector<ObjectShading> baked(const Scene& scene, RayScene& rays) {
     const double fps = 24.0;
     const std::vector<double> sizes = automatic_voxel_sizes(
         scene, rays, 0, animated_frames(scene, fps), fps, raster.width, raster.height);
     std::vector<ObjectShading> shading;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-        const Object& object = scene.objects[i];
-        shading.push_back({object.shader,
-                           std::make_shared<BrickPyramid>(
-                               bake_mesh(object.mesh, *object.shader, sizes[i], false)),
-                           float(sizes[i])});
+        const Mesh& mesh = scene.objects[i].mesh;
+        const BoundShaderPtr& shader = scene.objects[i].shader;
+        const double size = std::max(sizes[i], voxel_size_for(mesh, *shader, max_voxels));
+        auto pyramid = std::make_shared<BrickPyramid>(bake_mesh(mesh, *shader, size, false));
+        shading.push_back({shader, std::move(pyramid), float(size)});
     }
     return shading;
 }

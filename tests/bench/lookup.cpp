@@ -16,7 +16,7 @@ namespace estara::bench {
 namespace {
 
 constexpr std::size_t batch = SurfaceBatch::capacity;
-constexpr int round_count = 9;
+constexpr int round_count = 7;
 /// Half a step of a colour kept in 8 bits; what floats lose on the way is far below.
 constexpr float allowed_difference = 1.0f / 510.0f;
 
@@ -28,12 +28,12 @@ struct Size {
 Camera camera_along(const Box& box, const glm::vec3& forward, const Raster& raster) {
     const glm::vec3 up(0.0f, 1.0f, 0.0f),
         eye = 0.5f * (box.min + box.max) - 1.6f * box.diagonal() * forward;
-    return Camera({eye, glm::cross(forward, up), up, forward, 0.25f}, raster.width, raster.height);
+    return Camera({eye, glm::cross(forward, up), up, forward, 0.235f}, raster.width, raster.height);
 }
 
 /// Where the rays of two pictures, from the front and from behind, hit the surface.
 std::vector<glm::vec3> visible_points() {
-    constexpr Raster raster{1536, 1536};
+    constexpr Raster raster{1152, 1152};
     const Scene scene = scene_of(surface(), nullptr);
     const Mesh& mesh = scene.objects.front().mesh;
     const RayScene rays(scene);
