@@ -65,7 +65,11 @@ int main_of(int argc, char** argv) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     app.add_option("--folder", options.folder, "where to write")->capture_default_str();
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& problem) {
+        return app.exit(problem) == 0 ? 0 : int(ExitStatus::bad_input);
+    }
     bool good = false;
     const int status = run_program("estara-bench", [&] { good = run(options); });
     return status == 0 && !good ? 1 : status;
