@@ -15,6 +15,9 @@
 namespace estara {
 namespace {
 
+/// Points that are worked on together, their voxels on their way.
+constexpr std::size_t in_flight = 32;
+
 std::string title(const TextureGrid& grid) {
     return grid.object.empty() ? "texture grid" : fmt::format("object \"{}\"", grid.object);
 }
@@ -57,7 +60,8 @@ BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::v
     : m_floats(grid.floats()),
       m_voxel_size(grid.voxel_size),
       m_origin(grid.origin),
-      m_lookup(compiled_for<lookup_batch>(limit)) {
+      m_lookup(compiled_for<lookup_batch<in_flight>>(limit)),
+      m_lookup_one(compiled_for<lookup_batch<1>>(limit)) {
     if (m_floats < 1 || m_floats > max_floats) {
         throw Error(fmt::format("{}: {} floats a voxel; a lookup takes 1 to {}", title(grid),
                                 m_floats, max_floats));
@@ -113,30 +117,28 @@ struct BrickPyramid::Batch {
 
 namespace {
 
-constexpr std::size_t chunk = 32;  // points that are worked on together, their voxels on their way
-
-template <class T>
-using ByPoint = std::array<T, chunk>;
 template <class T>
 using ByAxis = std::array<T, 3>;
 
-/// Where the values of a chunk's points are, each point on a level of its own.
+/// Where the values of up to n points are, each on a level of its own.
+template <std::size_t n>
 struct Taps {
-    ByPoint<const std::uint32_t*> brick;
-    ByPoint<std::uint32_t> cell;       ///< place of the cell's first voxel
-    ByPoint<std::array<float, 4>> xy;  ///< weights, as interpolate() takes them
-    ByPoint<std::array<float, 2>> z;
+    std::array<const std::uint32_t*, n> brick;
+    std::array<std::uint32_t, n> cell;       ///< place of the cell's first voxel
+    std::array<std::array<float, 4>, n> xy;  ///< weights, as interpolate() takes them
+    std::array<std::array<float, 2>, n> z;
 };
 
-/// Points [begin, end) of a chunk, all on one level.
+/// Points [begin, end), all on one level.
 /// @param position  relative to index (0, 0, 0), in voxels of level 0
 /// @param miss      stands for the brick that is not there
+template <std::size_t n>
 [[gnu::always_inline]] inline void locate(const BrickLevel& level, double scale,
-                                          const ByAxis<ByPoint<double>>& position,
+                                          const ByAxis<std::array<double, n>>& position,
                                           std::size_t begin, std::size_t end,
-                                          const std::uint32_t* miss, Taps& taps) noexcept {
-    ByAxis<ByPoint<std::int32_t>> voxel;
-    ByAxis<ByPoint<float>> far;  // weights of the farther voxels
+                                          const std::uint32_t* miss, Taps<n>& taps) noexcept {
+    ByAxis<std::array<std::int32_t, n>> voxel;
+    ByAxis<std::array<float, n>> far;  // weights of the farther voxels
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (std::size_t i = begin; i < end; ++i) {
             const double index = within_int(position[axis][i] * scale);
@@ -144,7 +146,7 @@ struct Taps {
             far[axis][i] = float(index - double(voxel[axis][i]));
         }
     }
-    ByPoint<std::uint32_t> root, middle, bottom, bit;
+    std::array<std::uint32_t, n> root, middle, bottom, bit;
     for (std::size_t i = begin; i < end; ++i) {
         const float x = far[0][i], y = far[1][i], z = far[2][i];
         taps.xy[i] = {(1.0f - x) * (1.0f - y), (1.0f - x) * y, x * (1.0f - y), x * y};
@@ -170,17 +172,20 @@ struct Taps {
     }
 }
 
-[[gnu::always_inline]] inline Floats4 interpolate(const BrickPart& part, const Taps& taps,
+template <std::size_t n>
+[[gnu::always_inline]] inline Floats4 interpolate(const BrickPart& part, const Taps<n>& taps,
                                                   std::size_t i) noexcept {
     return interpolate(part, taps.brick[i] + part.offset, taps.cell[i], taps.xy[i], taps.z[i]);
 }
 
-/// All points of a chunk: those that follow each other on the same level together.
+/// All points: those that follow each other on the same level together.
+template <std::size_t n>
 [[gnu::always_inline]] inline void locate(const std::vector<BrickLevel>& levels,
-                                          const ByPoint<std::int32_t>& level,
-                                          const ByAxis<ByPoint<double>>& position,
+                                          const std::array<std::int32_t, n>& level,
+                                          const ByAxis<std::array<double, n>>& position,
                                           std::size_t count, const std::uint32_t* miss,
-                                          std::span<const BrickPart> parts, Taps& taps) noexcept {
+                                          std::span<const BrickPart> parts,
+                                          Taps<n>& taps) noexcept {
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
         while (end < count && level[end] == level[begin]) ++end;
         const double scale = std::bit_cast<float>((127 - level[begin]) << 23);  // 2^-level
@@ -201,18 +206,19 @@ struct Taps {
 
 }  // namespace
 
+template <std::size_t n>
 void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch) noexcept {
     const double per_voxel = 1.0 / pyramid.m_voxel_size;
     const glm::dvec3 origin = pyramid.m_origin;
     const auto voxel_size = float(pyramid.m_voxel_size);
     const auto last = float(pyramid.m_levels.size() - 1);
     const std::uint32_t* const miss = pyramid.m_miss.data();
-    ByAxis<ByPoint<double>> position;
-    ByPoint<std::int32_t> level;
-    ByPoint<float> weight;
-    Taps fine, coarse;
-    for (std::size_t first = 0; first < batch.P.size(); first += chunk) {
-        const std::size_t count = std::min(chunk, batch.P.size() - first);
+    ByAxis<std::array<double, n>> position;
+    std::array<std::int32_t, n> level;
+    std::array<float, n> weight;
+    Taps<n> fine, coarse;
+    for (std::size_t first = 0; first < batch.P.size(); first += n) {
+        const std::size_t count = std::min(n, batch.P.size() - first);
         const glm::vec3* const P = batch.P.data() + first;
         for (std::size_t i = 0; i < count; ++i) {
             position[0][i] = (double(P[i].x) - origin.x) * per_voxel;
@@ -245,7 +251,7 @@ void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch)
             }
         }
         for (const BrickPart& part : pyramid.m_parts) {
-            ByPoint<Floats4> value;
+            std::array<Floats4, n> value;
             for (std::size_t i = 0; i < count; ++i) value[i] = interpolate(part, fine, i);
             if (blend) {
                 for (std::size_t i = 0; i < count; ++i) {
@@ -262,13 +268,13 @@ void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch)
 
 bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
     std::uint8_t found = 0;
-    m_lookup(*this, {{&P, 1}, nullptr, float(level), out, 1, &found});
+    m_lookup_one(*this, {{&P, 1}, nullptr, float(level), out, 1, &found});
     return found != 0;
 }
 
 bool BrickPyramid::lookup(const glm::vec3& P, float footprint, float* out) const noexcept {
     std::uint8_t found = 0;
-    lookup({&P, 1}, {&footprint, 1}, out, 1, &found);
+    m_lookup_one(*this, {{&P, 1}, &footprint, 0.0f, out, 1, &found});
     return found != 0;
 }
 

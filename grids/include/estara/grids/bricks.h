@@ -90,6 +90,7 @@ private:
 
     BrickPyramid(const TextureGrid& grid, const std::span<const glm::vec3>* only,
                  InstructionSet limit);
+    template <std::size_t n>  // points at once
     static void lookup_batch(const BrickPyramid& pyramid, const Batch& batch) noexcept;
 
     std::vector<BrickLevel> m_levels;
@@ -98,7 +99,7 @@ private:
     double m_voxel_size = 1.0;
     glm::dvec3 m_origin{0.0};
     std::vector<std::uint32_t> m_miss;  // a brick of the mean, for where there is none
-    Lookup m_lookup = nullptr;
+    Lookup m_lookup = nullptr, m_lookup_one = nullptr;
 };
 
 }  // namespace estara
