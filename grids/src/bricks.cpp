@@ -240,7 +240,9 @@ void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch)
             blend |= weight[i] > 0.0f;
         }
         locate(pyramid.m_levels, level, position, count, miss, pyramid.m_parts, fine);
-        for (std::size_t i = 0; i < count; ++i) batch.found[first + i] = fine.brick[i] != miss;
+        std::array<std::uint8_t, n> found;  // (bytes that batch points to may alias anything)
+        for (std::size_t i = 0; i < count; ++i) found[i] = fine.brick[i] != miss;
+        std::memcpy(batch.found + first, found.data(), count);
         if (blend) {
             for (std::size_t i = 0; i < count; ++i) level[i] += weight[i] > 0.0f;
             locate(pyramid.m_levels, level, position, count, miss, pyramid.m_parts, coarse);
