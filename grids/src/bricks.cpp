@@ -2,294 +2,44 @@
 #include "estara/grids/bricks.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "blocks.h"
+#include "brick_level.h"
+#include "compiled_for.h"
 #include "estara/scenes/error.h"
 
 namespace estara {
 namespace {
 
-constexpr int side = 9;  // 8 voxels and the apron
-constexpr int voxels = side * side * side;
-constexpr int table_size = 16 * 16 * 16;                       // entries of a table
-constexpr int brick_bits = 3, table_bits = 7, root_bits = 11;  // 8, 16 * 8, 16 * 16 * 8 voxels
-constexpr int max_extent = 1 << 18;
-
-/// Four floats of a voxel, side by side in a register (extensions of g++ and clang).
-using Codes8 [[gnu::vector_size(16)]] = std::uint16_t;
-using Ints4 [[gnu::vector_size(16)]] = std::int32_t;
-using Floats4 [[gnu::vector_size(16)]] = float;
-
-/// Reads eight codes and takes four: each beside a zero is a 32-bit whole number.
-Floats4 load4(const std::uint16_t* codes) noexcept {
-    Codes8 c;
-    std::memcpy(&c, codes, sizeof c);
-    const Codes8 wide = __builtin_shufflevector(c, Codes8{}, 0, 8, 1, 9, 2, 10, 3, 11);
-    return __builtin_convertvector(std::bit_cast<Ints4>(wide), Floats4);
-}
-
-Floats4 load4(const float* values) noexcept {
-    Floats4 v;
-    std::memcpy(&v, values, sizeof v);
-    return v;
-}
-
-/// Turns a brick's codes back into values: least + step * code.
-struct Range {
-    float least, step;
-};
-
-/// A brick's values before they become codes.
-struct RawBrick {
-    float value[BrickPyramid::max_floats][voxels];
-    bool active[voxels];
-};
-
-std::size_t in_brick(const glm::ivec3& p) noexcept {
-    return std::size_t((p.x * side + p.y) * side + p.z);
-}
-
-/// Which of a table's entries a voxel belongs to, the entries being 2^bits voxels wide.
-std::size_t in_table(const glm::ivec3& p, int bits) noexcept {
-    const glm::ivec3 q = (p >> bits) & 15;
-    return std::size_t((q.x << 8) | (q.y << 4) | q.z);
-}
-
-/// Copies block b and what of its seven neighbours lies in the apron.
-void gather(const GridLevel& level, const glm::ivec3& origin, int floats, RawBrick& raw) {
-    std::fill(std::begin(raw.active), std::end(raw.active), false);
-    for (int n = 0; n < 8; ++n) {
-        const glm::ivec3 shift = 8 * glm::ivec3(n >> 2, (n >> 1) & 1, n & 1);
-        const std::ptrdiff_t found = find_block(level.blocks, origin + shift);
-        if (found < 0) continue;
-        const Block& block = level.blocks[std::size_t(found)];
-        std::uint64_t row = block.first;
-        for_each_bit(block.active, [&](int x, int y, int z) {
-            const glm::ivec3 p = shift + glm::ivec3(x, y, z);
-            if (glm::all(glm::lessThan(p, glm::ivec3(side)))) {
-                const std::size_t i = in_brick(p);
-                raw.active[i] = true;
-                for (int c = 0; c < floats; ++c) {
-                    raw.value[c][i] = level.planes[std::size_t(c)][row];
-                }
-            }
-            ++row;
-        });
-    }
-}
-
-/// Codes of float c. Voxels that are not active get the mean of those that are: no lookup on the
-/// surface reads them, and one beside it sees nothing odd.
-Range encode(const RawBrick& raw, int c, int floats, std::uint16_t* codes) {
-    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0.0;
-    int count = 0;
-    for (int i = 0; i < voxels; ++i) {
-        if (!raw.active[i]) continue;
-        const double v = raw.value[c][i];
-        low = std::min(low, v);
-        high = std::max(high, v);
-        sum += v;
-        ++count;
-    }
-    const double mean = sum / count;
-    const Range range{float(low), float((high - low) / 65535.0)};
-    const double inverse = range.step > 0.0f ? 1.0 / double(range.step) : 0.0;
-    for (int i = 0; i < voxels; ++i) {
-        const double v = raw.active[i] ? double(raw.value[c][i]) : mean;
-        const double code = std::clamp(std::nearbyint((v - low) * inverse), 0.0, 65535.0);
-        codes[i * floats + c] = std::uint16_t(code);
-    }
-    return range;
-}
+/// Points that are worked on together, their voxels on their way.
+constexpr std::size_t in_flight = 32;
 
 std::string title(const TextureGrid& grid) {
     return grid.object.empty() ? "texture grid" : fmt::format("object \"{}\"", grid.object);
 }
 
-}  // namespace
-
-/// A point located on a level: its cell's first voxel, its brick's range and where in the cell it
-/// is.
-struct BrickPyramid::Tap {
-    const std::uint16_t* voxel = nullptr;  ///< null: no brick there
-    const float* range = nullptr;
-    glm::vec3 f{0.0f};
-
-    /// Asks memory for the four pairs of voxels and the range.
-    void prefetch(int floats) const noexcept {
-        if (voxel == nullptr) return;
-        for (int row = 0; row < 4; ++row) {
-            __builtin_prefetch(voxel + ((row >> 1) * side + (row & 1)) * side * floats);
-        }
-        __builtin_prefetch(range);
-    }
-};
-
-/// One level: root table over the bounding box -> tables of 16^3 -> tables of 16^3 brick numbers.
-/// Table 0 of both kinds is full of zeros and brick 0 means none, so that the way down needs no
-/// test but the last.
-struct BrickPyramid::Level {
-    double per_voxel = 1.0;             // index units per unit of object space
-    glm::ivec3 low{0};                  // index of the bounding box's corner, multiple of 8
-    glm::dvec3 begin{0.0}, end{0.0};    // the bounding box, index space
-    glm::ivec3 roots{1};                // entries of the root table along each axis
-    std::vector<std::uint32_t> root;    // number of a middle table; an entry is 2048 voxels wide
-    std::vector<std::uint32_t> middle;  // number of a bottom table; 128 voxels
-    std::vector<std::uint32_t> bottom;  // number of a brick; 8 voxels
-    std::vector<std::uint16_t> codes;   // brick, voxel (x slowest), float
-    std::vector<float> ranges;          // brick, least of each float, step of each float
-
-    Level(const GridLevel& level, int floats, double voxel_size, const std::string& where);
-    void set_bounds(const GridLevel& level, const std::string& where);
-    void build_index(const GridLevel& level);
-    void fill_bricks(const GridLevel& level, int floats);
-    std::uint64_t bytes() const noexcept;
-
-    /// Number of the brick that holds a voxel, or 0.
-    std::uint32_t brick_of(const glm::ivec3& voxel) const noexcept {
-        const glm::ivec3 r = voxel >> root_bits;
-        const std::uint32_t m =
-            root[std::size_t((r.x * roots.y + r.y)) * std::size_t(roots.z) + std::size_t(r.z)];
-        const std::uint32_t t = middle[std::size_t(m) * table_size + in_table(voxel, table_bits)];
-        return bottom[std::size_t(t) * table_size + in_table(voxel, brick_bits)];
-    }
-
-    /// @param from_origin  position relative to index (0, 0, 0), object space
-    Tap locate(const glm::dvec3& from_origin, int floats) const noexcept;
-};
-
-BrickPyramid::Level::Level(const GridLevel& level, int floats, double voxel_size,
-                           const std::string& where)
-    : per_voxel(1.0 / voxel_size) {
-    set_bounds(level, where);
-    build_index(level);
-    fill_bricks(level, floats);
+/// log2(x) of a positive float that is not denormal, within 2e-7 + one rounding; exact for powers
+/// of two. The series of 2 atanh((m - 1) / (m + 1)) = ln m, m in [sqrt(1/2), sqrt(2)], by
+/// operations that a loop can do side by side.
+[[gnu::always_inline]] inline float log2_of(float x) noexcept {
+    const auto bits = std::bit_cast<std::int32_t>(x);
+    constexpr std::int32_t root_half = 0x3f3504f3;  // sqrt(1/2)
+    const std::int32_t exponent = (bits - root_half) >> 23;
+    const float m = std::bit_cast<float>(bits - (exponent << 23));
+    const float s = (m - 1.0f) / (m + 1.0f), q = s * s;
+    constexpr float c = 2.88539008f;  // 2 / ln 2
+    return float(exponent) + s * (c + q * (c / 3.0f + q * (c / 5.0f + q * (c / 7.0f))));
 }
 
-void BrickPyramid::Level::set_bounds(const GridLevel& level, const std::string& where) {
-    glm::ivec3 high(0);
-    if (!level.blocks.empty()) low = high = level.blocks.front().origin;
-    for (const Block& block : level.blocks) {
-        low = glm::min(low, block.origin);
-        high = glm::max(high, block.origin + 8);
-    }
-    begin = glm::dvec3(low);
-    end = glm::dvec3(high);
-    const glm::ivec3 extent = high - low;
-    const int widest = std::max({extent.x, extent.y, extent.z});
-    if (widest > max_extent) {
-        throw Error(fmt::format("{}: {} voxels wide, more than {}; bake it with larger voxels",
-                                where, widest, max_extent));
-    }
-    roots = glm::max(((extent - 1) >> root_bits) + 1, glm::ivec3(1));
-}
-
-void BrickPyramid::Level::build_index(const GridLevel& level) {
-    root.assign(std::size_t(roots.x) * std::size_t(roots.y) * std::size_t(roots.z), 0);
-    middle.assign(table_size, 0);
-    bottom.assign(table_size, 0);
-    const auto table = [](std::uint32_t& number, std::vector<std::uint32_t>& tables) {
-        if (number == 0) {
-            number = std::uint32_t(tables.size() / table_size);
-            tables.resize(tables.size() + table_size, 0);
-        }
-        return std::size_t(number) * table_size;
-    };
-    for (std::size_t b = 0; b < level.blocks.size(); ++b) {
-        const glm::ivec3 voxel = level.blocks[b].origin - low;
-        const glm::ivec3 r = voxel >> root_bits;
-        std::uint32_t& m =
-            root[std::size_t((r.x * roots.y + r.y)) * std::size_t(roots.z) + std::size_t(r.z)];
-        std::uint32_t& t = middle[table(m, middle) + in_table(voxel, table_bits)];
-        bottom[table(t, bottom) + in_table(voxel, brick_bits)] = std::uint32_t(b + 1);
-    }
-}
-
-void BrickPyramid::Level::fill_bricks(const GridLevel& level, int floats) {
-    const std::size_t brick_codes = std::size_t(voxels) * std::size_t(floats);
-    codes.resize(level.blocks.size() * brick_codes + max_floats);  // lookup() reads a little on
-    ranges.resize(level.blocks.size() * 2 * std::size_t(floats) + max_floats);
-    tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
-        RawBrick raw;
-        gather(level, level.blocks[b].origin, floats, raw);
-        float* range = ranges.data() + b * 2 * std::size_t(floats);
-        for (int c = 0; c < floats; ++c) {
-            const Range r = encode(raw, c, floats, codes.data() + b * brick_codes);
-            range[c] = r.least;
-            range[floats + c] = r.step;
-        }
-    });
-}
-
-std::uint64_t BrickPyramid::Level::bytes() const noexcept {
-    return (root.size() + middle.size() + bottom.size()) * sizeof(std::uint32_t) +
-           codes.size() * sizeof(std::uint16_t) + ranges.size() * sizeof(float);
-}
-
-BrickPyramid::Tap BrickPyramid::Level::locate(const glm::dvec3& from_origin,
-                                              int floats) const noexcept {
-    const glm::dvec3 index = from_origin * per_voxel;
-    // Written so that NaN is outside; within, coordinates fit an int.
-    const bool inside = (index.x >= begin.x) & (index.y >= begin.y) & (index.z >= begin.z) &
-                        (index.x < end.x) & (index.y < end.y) & (index.z < end.z);
-    if (!inside) return {};
-    const glm::ivec3 base(index);  // index >= 0, so this rounds down
-    const std::uint32_t number = brick_of(base - low);
-    if (number == 0) return {};
-    const std::size_t voxel = std::size_t(number - 1) * voxels + in_brick((base - low) & 7);
-    return {codes.data() + voxel * std::size_t(floats),
-            ranges.data() + std::size_t(number - 1) * 2 * std::size_t(floats),
-            glm::vec3(index - glm::dvec3(base))};
-}
-
-namespace {
-
-/// Trilinear value of a tap, four floats at a time; with 3 floats the fourth lane reads on into the
-/// next voxel, and is dropped.
-/// @tparam N  number of floats
-template <int N>
-void interpolate(const std::uint16_t* voxel, const float* range, const glm::vec3& f,
-                 float* out) noexcept {
-    const glm::vec3 e = 1.0f - f;
-    const float xy[4] = {e.x * e.y, e.x * f.y, f.x * e.y, f.x * f.y};
-    for (int c = 0; c < N; c += 4) {
-        Floats4 sum = {};
-        for (int corner = 0; corner < 4; ++corner) {
-            const std::uint16_t* near =
-                voxel + ((corner >> 1) * side * side + (corner & 1) * side) * N + c;
-            sum += xy[corner] * (e.z * load4(near) + f.z * load4(near + N));
-        }
-        const Floats4 value = load4(range + c) + load4(range + N + c) * sum;
-        for (int k = c; k < std::min(c + 4, N); ++k) out[k] = value[k - c];
-    }
-}
-
-void interpolate(const std::uint16_t* voxel, const float* range, const glm::vec3& f, int floats,
-                 float* out) noexcept {
-    switch (floats) {
-        case 1:
-            return interpolate<1>(voxel, range, f, out);
-        case 2:
-            return interpolate<2>(voxel, range, f, out);
-        case 3:
-            return interpolate<3>(voxel, range, f, out);
-        case 4:
-            return interpolate<4>(voxel, range, f, out);
-        case 5:
-            return interpolate<5>(voxel, range, f, out);
-        case 6:
-            return interpolate<6>(voxel, range, f, out);
-        case 7:
-            return interpolate<7>(voxel, range, f, out);
-        default:
-            return interpolate<8>(voxel, range, f, out);
-    }
+[[gnu::always_inline]] inline float fractional_level(float footprint, float voxel_size, float last,
+                                                     float bias) noexcept {
+    const float level = log2_of(footprint / voxel_size) + bias;
+    const float within = level > 0.0f ? (level < last ? level : last) : 0.0f;
+    return footprint > 0.0f ? within : 0.0f;
 }
 
 }  // namespace
@@ -298,91 +48,245 @@ BrickPyramid::~BrickPyramid() = default;
 BrickPyramid::BrickPyramid(BrickPyramid&&) noexcept = default;
 BrickPyramid& BrickPyramid::operator=(BrickPyramid&&) noexcept = default;
 
-BrickPyramid::BrickPyramid(const TextureGrid& grid)
-    : m_floats(grid.floats()), m_voxel_size(grid.voxel_size), m_origin(grid.origin) {
+BrickPyramid::BrickPyramid(const TextureGrid& grid, InstructionSet limit)
+    : BrickPyramid(grid, nullptr, limit) {}
+
+BrickPyramid BrickPyramid::around(const TextureGrid& grid, std::span<const glm::vec3> P) {
+    return {grid, &P, InstructionSet::avx512};
+}
+
+BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::vec3>* only,
+                           InstructionSet limit)
+    : m_floats(grid.floats()),
+      m_voxel_size(grid.voxel_size),
+      m_origin(grid.origin),
+      m_lookup(compiled_for<lookup_batch<in_flight>>(limit)),
+      m_lookup_one(compiled_for<lookup_batch<1>>(limit)) {
     if (m_floats < 1 || m_floats > max_floats) {
         throw Error(fmt::format("{}: {} floats a voxel; a lookup takes 1 to {}", title(grid),
                                 m_floats, max_floats));
     }
     check_finite(grid, title(grid));
-    for (std::size_t n = 0; n < grid.levels.size(); ++n) {
-        m_levels.emplace_back(grid.levels[n], m_floats, std::ldexp(m_voxel_size, int(n)),
-                              title(grid));
+    const int half = m_floats > 4 ? (m_floats + 1) / 2 : m_floats;
+    m_parts.emplace_back(0, half, 0);
+    if (half < m_floats) m_parts.emplace_back(half, m_floats - half, BrickPart::words(half));
+
+    std::vector<glm::ivec3> cells;
+    if (only != nullptr) {
+        for (const glm::vec3& P : *only) {
+            const glm::dvec3 index = (glm::dvec3(P) - m_origin) * (1.0 / m_voxel_size);
+            cells.emplace_back(within_int(index.x), within_int(index.y), within_int(index.z));
+        }
+        m_levels.emplace_back(grid.levels.front(), m_parts, cells, title(grid), limit);
+    } else {
+        for (const GridLevel& level : grid.levels) {
+            m_levels.emplace_back(level, m_parts, std::nullopt, title(grid), limit);
+        }
     }
+    // Scales and codes of 0: the mean everywhere.
+    m_miss.assign(m_levels.front().brick_words, 0);
     const std::vector<float> means = plane_means(grid);
-    std::copy(means.begin(), means.end(), m_mean.begin());
+    for (const BrickPart& part : m_parts) {
+        std::memcpy(m_miss.data() + part.offset, means.data() + part.first,
+                    std::size_t(part.floats) * sizeof(float));
+    }
 }
 
 int BrickPyramid::levels() const noexcept { return int(m_levels.size()); }
 
+int BrickPyramid::code_bits(int c) const noexcept {
+    const BrickPart& part = c < m_parts.front().floats ? m_parts.front() : m_parts.back();
+    return code_fields(part.floats)[std::size_t(c - part.first)].bits;
+}
+
 std::uint64_t BrickPyramid::bytes() const noexcept {
     std::uint64_t sum = 0;
-    for (const Level& level : m_levels) sum += level.bytes();
+    for (const BrickLevel& level : m_levels) sum += level.bytes();
     return sum;
 }
 
-/// The value of one tap or of two blended; the mean where there is no brick.
-bool BrickPyramid::blend(const Tap& fine, const Tap& coarse, float weight,
-                         float* out) const noexcept {
-    if (fine.voxel == nullptr) {
-        std::copy_n(m_mean.begin(), m_floats, out);
-        return false;
-    }
-    interpolate(fine.voxel, fine.range, fine.f, m_floats, out);
-    // Beside the surface the coarser level may have nothing: then the finer one alone.
-    if (coarse.voxel == nullptr) return true;
-    float value[max_floats];
-    interpolate(coarse.voxel, coarse.range, coarse.f, m_floats, value);
-    for (int c = 0; c < m_floats; ++c) out[c] += (value[c] - out[c]) * weight;
-    return true;
-}
+/// What is looked up and where it goes.
+struct BrickPyramid::Batch {
+    std::span<const glm::vec3> P;
+    const float* footprints;  ///< null: every point on `level`
+    float level;
+    float* planes;
+    std::size_t stride;
+    std::uint8_t* found;
+};
 
-bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
-    const Tap tap = m_levels[std::size_t(level)].locate(glm::dvec3(P) - m_origin, m_floats);
-    return blend(tap, {}, 0.0f, out);
-}
+namespace {
 
-bool BrickPyramid::lookup(const glm::vec3& P, float footprint, float* out) const noexcept {
-    std::uint8_t found = 0;
-    lookup({&P, 1}, {&footprint, 1}, out, 1, &found);
-    return found != 0;
-}
+template <class T>
+using ByAxis = std::array<T, 3>;
 
-void BrickPyramid::lookup(std::span<const glm::vec3> P, std::span<const float> footprints,
-                          float* planes, std::size_t stride, std::uint8_t* found) const noexcept {
-    constexpr std::size_t in_flight = 32;  // points whose voxels are on their way at once
-    struct Pair {
-        Tap fine, coarse;
-        float weight;
-    };
-    std::array<Pair, in_flight> pairs;
-    float value[max_floats];
-    for (std::size_t first = 0; first < P.size(); first += in_flight) {
-        const std::size_t count = std::min(in_flight, P.size() - first);
-        for (std::size_t i = 0; i < count; ++i) {
-            const glm::dvec3 p = glm::dvec3(P[first + i]) - m_origin;
-            const float level = level_for(footprints[first + i]);
-            const auto fine = std::size_t(level);
-            Pair& pair = pairs[i];
-            pair.weight = level - float(fine);
-            pair.fine = m_levels[fine].locate(p, m_floats);
-            pair.coarse = pair.weight > 0.0f ? m_levels[fine + 1].locate(p, m_floats) : Tap{};
-            pair.fine.prefetch(m_floats);
-            pair.coarse.prefetch(m_floats);
+/// Where the values of up to n points are, each on a level of its own.
+template <std::size_t n>
+struct Taps {
+    std::array<const std::uint32_t*, n> brick;
+    std::array<std::uint32_t, n> cell;       ///< place of the cell's first voxel
+    std::array<std::array<float, 4>, n> xy;  ///< weights, as interpolate() takes them
+    std::array<std::array<float, 2>, n> z;
+};
+
+/// Points [begin, end), all on one level.
+/// @param position  relative to index (0, 0, 0), in voxels of level 0
+/// @param miss      stands for the brick that is not there
+template <std::size_t n>
+[[gnu::always_inline]] inline void locate(const BrickLevel& level, double scale,
+                                          const ByAxis<std::array<double, n>>& position,
+                                          std::size_t begin, std::size_t end,
+                                          const std::uint32_t* miss, Taps<n>& taps) noexcept {
+    ByAxis<std::array<std::int32_t, n>> voxel;
+    ByAxis<std::array<float, n>> far;  // weights of the farther voxels
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const double index = within_int(position[axis][i] * scale);
+            voxel[axis][i] = std::int32_t(index);
+            far[axis][i] = float(index - double(voxel[axis][i]));
         }
+    }
+    std::array<std::uint32_t, n> root, middle, bottom, bit;
+    for (std::size_t i = begin; i < end; ++i) {
+        const float x = far[0][i], y = far[1][i], z = far[2][i];
+        taps.xy[i] = {(1.0f - x) * (1.0f - y), (1.0f - x) * y, x * (1.0f - y), x * y};
+        taps.z[i] = {1.0f - z, z};
+    }
+    const BrickIndex::Box box = level.index.box();
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto x = std::uint32_t(voxel[0][i]), y = std::uint32_t(voxel[1][i]),
+                   z = std::uint32_t(voxel[2][i]);
+        const BrickIndex::Way way = box.way(x, y, z);
+        root[i] = way.root;
+        middle[i] = way.middle;
+        bottom[i] = way.bottom;
+        bit[i] = way.bit;
+        taps.cell[i] = in_brick(x & 3, y & 3, z & 3);
+    }
+    const std::uint32_t* const words = level.words.get();
+    const std::size_t brick_words = level.brick_words;
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t number = level.index.brick_at({root[i], middle[i], bottom[i], bit[i]});
+        taps.brick[i] =
+            number == BrickIndex::none ? miss : words + std::size_t(number) * brick_words;
+    }
+}
+
+template <std::size_t n>
+[[gnu::always_inline]] inline Floats4 interpolate(const BrickPart& part, const Taps<n>& taps,
+                                                  std::size_t i) noexcept {
+    return interpolate(part, taps.brick[i] + part.offset, taps.cell[i], taps.xy[i], taps.z[i]);
+}
+
+/// All points: those that follow each other on the same level together.
+template <std::size_t n>
+[[gnu::always_inline]] inline void locate(const std::vector<BrickLevel>& levels,
+                                          const std::array<std::int32_t, n>& level,
+                                          const ByAxis<std::array<double, n>>& position,
+                                          std::size_t count, const std::uint32_t* miss,
+                                          std::span<const BrickPart> parts,
+                                          Taps<n>& taps) noexcept {
+    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+        while (end < count && level[end] == level[begin]) ++end;
+        const double scale = std::bit_cast<float>((127 - level[begin]) << 23);  // 2^-level
+        locate(levels[std::size_t(level[begin])], scale, position, begin, end, miss, taps);
+    }
+    for (const BrickPart& part : parts) {
         for (std::size_t i = 0; i < count; ++i) {
-            found[first + i] = blend(pairs[i].fine, pairs[i].coarse, pairs[i].weight, value);
-            for (int c = 0; c < m_floats; ++c) {
-                planes[std::size_t(c) * stride + first + i] = value[c];
+            const std::uint32_t* const words = taps.brick[i] + part.offset;
+            const std::uint32_t* const near = words + part.header() + taps.cell[i];
+            __builtin_prefetch(words);
+            __builtin_prefetch(near);
+            __builtin_prefetch(near + in_brick(0, 1, 1));
+            __builtin_prefetch(near + in_brick(1, 0, 0));
+            __builtin_prefetch(near + in_brick(1, 1, 1));
+        }
+    }
+}
+
+}  // namespace
+
+template <std::size_t n>
+void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch) noexcept {
+    const double per_voxel = 1.0 / pyramid.m_voxel_size;
+    const glm::dvec3 origin = pyramid.m_origin;
+    const auto voxel_size = float(pyramid.m_voxel_size);
+    const auto last = float(pyramid.m_levels.size() - 1);
+    const std::uint32_t* const miss = pyramid.m_miss.data();
+    ByAxis<std::array<double, n>> position;
+    std::array<std::int32_t, n> level;
+    std::array<float, n> weight;
+    Taps<n> fine, coarse;
+    for (std::size_t first = 0; first < batch.P.size(); first += n) {
+        const std::size_t count = std::min(n, batch.P.size() - first);
+        const glm::vec3* const P = batch.P.data() + first;
+        for (std::size_t i = 0; i < count; ++i) {
+            position[0][i] = (double(P[i].x) - origin.x) * per_voxel;
+            position[1][i] = (double(P[i].y) - origin.y) * per_voxel;
+            position[2][i] = (double(P[i].z) - origin.z) * per_voxel;
+        }
+        if (batch.footprints == nullptr) {
+            weight.fill(batch.level);
+        } else {
+            const float* const footprints = batch.footprints + first;
+            for (std::size_t i = 0; i < count; ++i) {
+                weight[i] = fractional_level(footprints[i], voxel_size, last, level_bias);
+            }
+        }
+        std::int32_t blend = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            level[i] = std::int32_t(weight[i]);
+            weight[i] -= float(level[i]);
+            blend |= weight[i] > 0.0f;
+        }
+        locate(pyramid.m_levels, level, position, count, miss, pyramid.m_parts, fine);
+        std::array<std::uint8_t, n> found;  // (bytes that batch points to may alias anything)
+        for (std::size_t i = 0; i < count; ++i) found[i] = fine.brick[i] != miss;
+        std::memcpy(batch.found + first, found.data(), count);
+        if (blend) {
+            for (std::size_t i = 0; i < count; ++i) level[i] += weight[i] > 0.0f;
+            locate(pyramid.m_levels, level, position, count, miss, pyramid.m_parts, coarse);
+            // Beside the surface one of the levels may have nothing: then the finer one alone.
+            for (std::size_t i = 0; i < count; ++i) {
+                const bool both = (fine.brick[i] != miss) & (coarse.brick[i] != miss);
+                weight[i] = both ? weight[i] : 0.0f;
+            }
+        }
+        for (const BrickPart& part : pyramid.m_parts) {
+            std::array<Floats4, n> value;
+            for (std::size_t i = 0; i < count; ++i) value[i] = interpolate(part, fine, i);
+            if (blend) {
+                for (std::size_t i = 0; i < count; ++i) {
+                    value[i] += (interpolate(part, coarse, i) - value[i]) * weight[i];
+                }
+            }
+            for (int c = 0; c < part.floats; ++c) {
+                float* const plane = batch.planes + std::size_t(part.first + c) * batch.stride;
+                for (std::size_t i = 0; i < count; ++i) plane[first + i] = value[i][c];
             }
         }
     }
 }
 
+bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
+    std::uint8_t found = 0;
+    m_lookup_one(*this, {{&P, 1}, nullptr, float(level), out, 1, &found});
+    return found != 0;
+}
+
+bool BrickPyramid::lookup(const glm::vec3& P, float footprint, float* out) const noexcept {
+    std::uint8_t found = 0;
+    m_lookup_one(*this, {{&P, 1}, &footprint, 0.0f, out, 1, &found});
+    return found != 0;
+}
+
+void BrickPyramid::lookup(std::span<const glm::vec3> P, std::span<const float> footprints,
+                          float* planes, std::size_t stride, std::uint8_t* found) const noexcept {
+    m_lookup(*this, {P, footprints.data(), 0.0f, planes, stride, found});
+}
+
 float BrickPyramid::level_for(float footprint) const noexcept {
-    if (!(footprint > 0.0f)) return 0.0f;
-    const float level = std::log2(footprint / float(m_voxel_size)) + level_bias;
-    return std::clamp(level, 0.0f, float(levels() - 1));
+    return fractional_level(footprint, float(m_voxel_size), float(levels() - 1), level_bias);
 }
 
 }  // namespace estara

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "estara/grids/bricks.h"
 #include "estara/grids/vdb_sampler.h"
@@ -15,10 +18,61 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-/// Bound of bricks.h for a level: half a code of the widest possible range, and rounding.
-float bound(const GridLevel& level, std::size_t c) {
-    const auto [low, high] = std::minmax_element(level.planes[c].begin(), level.planes[c].end());
-    return (*high - *low) / 131070.0f + 8e-7f * std::max(std::abs(*low), std::abs(*high));
+/// The 4^3 cells, by their first voxel divided by 4, that a brick holds.
+using BrickOrigin = std::array<int, 3>;
+
+BrickOrigin brick_at(const glm::ivec3& cell) { return {cell.x >> 2, cell.y >> 2, cell.z >> 2}; }
+
+/// Bounds of bricks.h for a level, by brick and float: half a code of the brick's range, and
+/// rounding.
+std::map<BrickOrigin, std::vector<float>> bounds_of(const GridLevel& level,
+                                                    const BrickPyramid& bricks) {
+    const auto floats = std::size_t(bricks.floats());
+    std::map<BrickOrigin, std::vector<std::pair<float, float>>> ranges;
+    for (const Block& block : level.blocks) {
+        std::uint64_t row = block.first;
+        for_each_bit(block.active, [&](int x, int y, int z) {
+            const glm::ivec3 voxel = block.origin + glm::ivec3(x, y, z);
+            std::set<BrickOrigin> holders;  // a voxel on a seam is in up to eight bricks
+            for (int n = 0; n < 8; ++n) {
+                holders.insert(brick_at(voxel - glm::ivec3(n >> 2, (n >> 1) & 1, n & 1)));
+            }
+            for (const BrickOrigin& origin : holders) {
+                auto& range = ranges[origin];
+                range.resize(floats, {infinity, -infinity});
+                for (std::size_t c = 0; c < floats; ++c) {
+                    const float v = level.planes[c][row];
+                    range[c] = {std::min(range[c].first, v), std::max(range[c].second, v)};
+                }
+            }
+            ++row;
+        });
+    }
+    std::map<BrickOrigin, std::vector<float>> bounds;
+    for (const auto& [origin, range] : ranges) {
+        for (std::size_t c = 0; c < floats; ++c) {
+            const auto [low, high] = range[c];
+            const float codes = std::exp2(float(bricks.code_bits(int(c)))) - 1.0f;
+            bounds[origin].push_back((high - low) / (2.0f * codes) +
+                                     1e-6f * std::max(std::abs(low), std::abs(high)));
+        }
+    }
+    return bounds;
+}
+
+glm::ivec3 cell_of(const TextureGrid& grid, const glm::vec3& P, int level) {
+    const double per_voxel = 1.0 / std::ldexp(grid.voxel_size, level);
+    return glm::ivec3(glm::floor((glm::dvec3(P) - grid.origin) * per_voxel));
+}
+
+/// A grid of n floats: a colour first, if there is one.
+TextureGrid grid_of(int n, double voxel_size) {
+    std::vector<GridChannel> channels;
+    if (n >= 3) channels.push_back({"color", 3});
+    for (int i = n >= 3 ? 3 : 0; i < n; ++i) channels.push_back({"weight" + std::to_string(i), 1});
+    TextureGrid grid = sphere_grid({}, voxel_size, channels);
+    add_levels(grid);
+    return grid;
 }
 
 /// Both samplers on every level, at count points of the sphere.
@@ -31,16 +85,14 @@ void expect_like_openvdb(const TextureGrid& grid, const Sphere& sphere, int coun
     ASSERT_EQ(bricks.floats(), grid.floats());
     const std::vector<glm::vec3> points = sphere.random_points(count);
     for (int n = 0; n < bricks.levels(); ++n) {
-        std::vector<float> bounds;
-        for (std::size_t c = 0; c < std::size_t(grid.floats()); ++c) {
-            bounds.push_back(bound(grid.levels[std::size_t(n)], c));
-        }
+        const auto bounds = bounds_of(grid.levels[std::size_t(n)], bricks);
         for (const glm::vec3& P : points) {
             float expected[BrickPyramid::max_floats], got[BrickPyramid::max_floats];
             ASSERT_TRUE(oracle.lookup(P, n, expected));
             ASSERT_TRUE(bricks.lookup(P, n, got));
+            const std::vector<float>& bound = bounds.at(brick_at(cell_of(grid, P, n)));
             for (int c = 0; c < grid.floats(); ++c) {
-                ASSERT_NEAR(got[c], expected[c], bounds[std::size_t(c)])
+                ASSERT_NEAR(got[c], expected[c], bound[std::size_t(c)])
                     << "level " << n << " float " << c;
             }
         }
@@ -53,14 +105,7 @@ TEST(BrickPyramid, AgreesWithOpenVdbOnEveryLevel) {
 
 TEST(BrickPyramid, AgreesWithOpenVdbForAnyNumberOfFloats) {
     for (int n = 1; n <= BrickPyramid::max_floats; ++n) {
-        std::vector<GridChannel> channels;
-        if (n >= 3) channels.push_back({"color", 3});
-        for (int i = n >= 3 ? 3 : 0; i < n; ++i) {
-            channels.push_back({"weight" + std::to_string(i), 1});
-        }
-        TextureGrid grid = sphere_grid({}, 0.1, channels);
-        add_levels(grid);
-        expect_like_openvdb(grid, {}, 2'000);
+        expect_like_openvdb(grid_of(n, 0.1), {}, 2'000);
     }
 }
 
@@ -83,23 +128,27 @@ TEST(BrickPyramid, ReturnsTheVoxelAtItsCentre) {
     TextureGrid grid = complete_grid("", 0.0625);  // a power of two: positions are exact
     grid.origin = {-2.0, 3.0, 0.5};
     const BrickPyramid bricks(grid);
+    int found = 0;
     for (int n = 0; n < bricks.levels(); ++n) {
         const GridLevel& level = grid.levels[std::size_t(n)];
+        const auto bounds = bounds_of(level, bricks);
         for (const Block& block : level.blocks) {
             std::uint64_t row = block.first;
-            for (int i = 0; i < 512; ++i) {
-                if (!block.active.test(i)) continue;
-                const glm::ivec3 v = block.origin + glm::ivec3(i >> 6, (i >> 3) & 7, i & 7);
+            for_each_bit(block.active, [&](int x, int y, int z) {
+                const glm::ivec3 v = block.origin + glm::ivec3(x, y, z);
                 const glm::dvec3 P = grid.origin + std::ldexp(0.0625, n) * glm::dvec3(v);
                 float got[4];
-                ASSERT_TRUE(bricks.lookup(glm::vec3(P), n, got));
-                for (std::size_t c = 0; c < 4; ++c) {
-                    ASSERT_NEAR(got[c], level.planes[c][row], bound(level, c));
+                if (bricks.lookup(glm::vec3(P), n, got)) {  // not a corner of the shell's outside
+                    ++found;
+                    for (std::size_t c = 0; c < 4; ++c) {
+                        ASSERT_NEAR(got[c], level.planes[c][row], bounds.at(brick_at(v))[c]);
+                    }
                 }
                 ++row;
-            }
+            });
         }
     }
+    EXPECT_GT(found, int(grid.levels[0].voxels() * 3 / 4));
 }
 
 TEST(BrickPyramid, ReturnsAConstantExactly) {
@@ -163,7 +212,10 @@ TEST(BrickPyramid, LevelFollowsTheFootprint) {
     const auto last = float(bricks.levels() - 1);
     const float bias = BrickPyramid::level_bias;
     EXPECT_FLOAT_EQ(bricks.level_for(0.0625f * std::exp2(1.5f - bias)), 1.5f);
-    EXPECT_EQ(bricks.level_for(0.0625f * std::exp2(-bias)), 0.0f);
+    EXPECT_NEAR(bricks.level_for(0.0625f * std::exp2(-bias)), 0.0f, 5e-7f);
+    for (float level = 0.1f; level < last; level += 0.01f) {
+        EXPECT_NEAR(bricks.level_for(0.0625f * std::exp2(level - bias)), level, 5e-7f);
+    }
     EXPECT_EQ(bricks.level_for(1e-30f), 0.0f);
     EXPECT_EQ(bricks.level_for(0.0f), 0.0f);
     EXPECT_EQ(bricks.level_for(-1.0f), 0.0f);
@@ -171,6 +223,78 @@ TEST(BrickPyramid, LevelFollowsTheFootprint) {
     EXPECT_EQ(bricks.level_for(not_a_number), 0.0f);
     EXPECT_EQ(bricks.level_for(1e30f), last);
     EXPECT_EQ(bricks.level_for(infinity), last);
+}
+
+struct Looked {
+    std::vector<float> planes;
+    std::vector<std::uint8_t> found;
+    bool operator==(const Looked&) const = default;
+};
+
+Looked batch(const BrickPyramid& bricks, const std::vector<glm::vec3>& P,
+             const std::vector<float>& footprints) {
+    Looked looked{std::vector<float>(P.size() * std::size_t(bricks.floats())),
+                  std::vector<std::uint8_t>(P.size())};
+    bricks.lookup(P, footprints, looked.planes.data(), P.size(), looked.found.data());
+    return looked;
+}
+
+/// On the sphere, beside it, far away and nowhere, with footprints of all levels and none.
+std::pair<std::vector<glm::vec3>, std::vector<float>> mixed_points(int count) {
+    std::vector<glm::vec3> P = Sphere{}.random_points(count);
+    std::vector<float> footprints;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> uniform;
+    for (std::size_t i = 0; i < P.size(); ++i) {
+        footprints.push_back(std::exp2(12.0f * uniform(random) - 8.0f));
+        if (i % 7 == 0) footprints.back() = 0.0f;
+        if (i % 50 == 3) footprints.back() = not_a_number;
+        if (i % 11 == 5) P[i] += 0.2f * (glm::vec3(uniform(random)) - 0.5f);
+        if (i % 101 == 50) P[i].y = not_a_number;
+        if (i % 101 == 70) P[i].z = infinity;
+        if (i % 101 == 90) P[i] *= 1e30f;
+    }
+    return {P, footprints};
+}
+
+TEST(BrickPyramid, IsTheSameOnEveryInstructionSetAndOneByOne) {
+    for (int n = 1; n <= BrickPyramid::max_floats; ++n) {
+        const TextureGrid grid = grid_of(n, 0.05);
+        const auto [P, footprints] = mixed_points(5'000);
+        const BrickPyramid widest(grid);
+        const Looked expected = batch(widest, P, footprints);
+        EXPECT_GT(std::count(expected.found.begin(), expected.found.end(), 0), 100);
+        for (const auto limit :
+             {InstructionSet::baseline, InstructionSet::sse42, InstructionSet::avx2}) {
+            EXPECT_TRUE(batch(BrickPyramid(grid, limit), P, footprints) == expected)
+                << n << " floats, instruction set " << int(limit);
+        }
+        for (std::size_t i = 0; i < P.size(); ++i) {
+            float got[BrickPyramid::max_floats];
+            ASSERT_EQ(widest.lookup(P[i], footprints[i], got), expected.found[i] != 0);
+            for (std::size_t c = 0; c < std::size_t(n); ++c) {
+                ASSERT_EQ(got[c], expected.planes[c * P.size() + i]);
+            }
+        }
+    }
+}
+
+TEST(BrickPyramid, AroundPointsIsTheSameAtThem) {
+    for (const int n : {3, 5}) {
+        const TextureGrid grid = grid_of(n, 0.02);
+        const auto [P, footprints] = mixed_points(500);
+        const std::vector<float> finest(P.size(), 0.0f);
+        const BrickPyramid whole(grid);
+        const BrickPyramid part = BrickPyramid::around(grid, P);
+        EXPECT_TRUE(batch(part, P, finest) == batch(whole, P, finest));
+        EXPECT_EQ(part.levels(), 1);
+        EXPECT_LT(part.bytes(), whole.bytes() / 2);
+    }
+}
+
+TEST(BrickPyramid, TakesAtMost24BytesAVoxelOfThreeFloats) {
+    const TextureGrid grid = grid_of(3, 0.01);
+    EXPECT_LT(double(BrickPyramid(grid).bytes()), 24.0 * double(grid.levels[0].voxels()));
 }
 
 TEST(BrickPyramid, BlendsLevelsWithoutAStep) {
@@ -193,7 +317,8 @@ TEST(BrickPyramid, BlendsLevelsWithoutAStep) {
     }
 }
 
-/// Blocks of one voxel each at both ends of a cube of the given extent.
+/// A cell at each corner of a cube of the given extent, in a block of its own: voxels 5 to 6, 4 to
+/// 5 and 6 to 7 of it.
 TextureGrid corners(int extent) {
     TextureGrid grid;
     grid.channels = {{"color", 3}};
@@ -202,10 +327,12 @@ TextureGrid corners(int extent) {
     for (int n = 0; n < 8; ++n) {
         Block block;
         block.origin = (extent - 8) * glm::ivec3(n >> 2, (n >> 1) & 1, n & 1);
-        block.first = std::uint64_t(n);
-        block.active.set(BlockMask::bit(5, 6, 7));
+        block.first = 8 * std::uint64_t(n);
+        for (int v = 0; v < 8; ++v) {
+            block.active.set(BlockMask::bit(5 + (v >> 2), 4 + ((v >> 1) & 1), 6 + (v & 1)));
+        }
         level.blocks.push_back(block);
-        for (auto& plane : level.planes) plane.push_back(float(n));
+        for (auto& plane : level.planes) plane.insert(plane.end(), 8, float(n));
     }
     return grid;
 }
@@ -217,7 +344,7 @@ TEST(BrickPyramid, StaysSmallWhenBlocksAreFarApart) {
     for (int n = 0; n < 8; ++n) {
         const glm::ivec3 origin = (extent - 8) * glm::ivec3(n >> 2, (n >> 1) & 1, n & 1);
         float got[3];
-        ASSERT_TRUE(bricks.lookup(glm::vec3(origin) + glm::vec3(5.0f, 6.0f, 7.0f), 0, got));
+        ASSERT_TRUE(bricks.lookup(glm::vec3(origin) + glm::vec3(5.5f, 4.5f, 6.5f), 0, got));
         EXPECT_EQ(got[0], float(n));
     }
     float got[3];
@@ -229,7 +356,7 @@ TEST(BrickPyramid, TakesExtentsUpToTwoToTheEighteen) {
     const BrickPyramid bricks(corners(1 << 18));
     EXPECT_LT(bricks.bytes(), 16u << 20);
     float got[3];
-    ASSERT_TRUE(bricks.lookup(glm::vec3(262141.0f, 262142.0f, 262143.0f), 0, got));
+    ASSERT_TRUE(bricks.lookup(glm::vec3(262141.5f, 262140.5f, 262142.5f), 0, got));
     EXPECT_EQ(got[0], 7.0f);
     TextureGrid wider = corners((1 << 18) + 8);
     wider.object = "hair";

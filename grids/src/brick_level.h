@@ -1,0 +1,49 @@
+// One level of a BrickPyramid: its index and its bricks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brick_codes.h"
+#include "brick_index.h"
+#include "estara/shaders/registry.h"
+
+namespace estara {
+
+/// An index coordinate that may be anything: -1 below 0 and for NaN, at most 2^30, and so outside
+/// of every level; it fits an int.
+inline double within_int(double index) noexcept {
+    constexpr double far = 1 << 30;
+    index = index >= 0.0 ? index : -1.0;
+    return index < far ? index : far;
+}
+
+struct BrickLevel {
+    struct Free {
+        void operator()(std::uint32_t* words) const noexcept { std::free(words); }
+    };
+
+    BrickIndex index;
+    std::size_t brick_words;  ///< of all parts
+    std::uint32_t bricks = 0;
+    std::unique_ptr<std::uint32_t[], Free> words;
+
+    /// A brick for every 4^3 cells of which one has eight active voxels. In parallel.
+    /// @param cells  if there, only the bricks that hold one of these are made
+    /// @param where  begins the message of an Error
+    BrickLevel(const GridLevel& level, std::span<const BrickPart> parts,
+               std::optional<std::span<const glm::ivec3>> cells, const std::string& where,
+               InstructionSet limit);
+
+    std::uint64_t bytes() const noexcept {
+        return index.bytes() + std::uint64_t(bricks) * brick_words * sizeof(std::uint32_t);
+    }
+};
+
+}  // namespace estara
