@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "estara/grids/texture_grid.h"
@@ -71,15 +72,19 @@ struct VdbSampler::Impl {
     std::vector<openvdb::math::Transform::ConstPtr> transforms;
 };
 
-VdbSampler::VdbSampler(const std::string& path, const std::string& object)
+VdbSampler::VdbSampler(const std::string& path, const std::string& object,
+                       const std::string& shader)
     : m_impl(std::make_unique<Impl>()) {
     const std::vector<TextureGrid> grids = read_vdb(path);  // makes sure that all is there
+    std::set<std::string> objects;
+    for (const TextureGrid& grid : grids) objects.insert(grid.object);
     const auto found = std::find_if(grids.begin(), grids.end(), [&](const TextureGrid& grid) {
-        return grid.object == object || (object.empty() && grids.size() == 1);
+        const bool is_it = grid.object == object || (object.empty() && objects.size() == 1);
+        return is_it && (shader.empty() ? grid.shader != "irradiance" : grid.shader == shader);
     });
     if (found == grids.end()) {
         std::vector<std::string> names;
-        for (const TextureGrid& grid : grids) names.push_back('"' + grid.object + '"');
+        for (const std::string& name : objects) names.push_back('"' + name + '"');
         throw Error(
             fmt::format("{}: no object \"{}\"; it has: {}", path, object, fmt::join(names, ", ")));
     }
@@ -88,7 +93,7 @@ VdbSampler::VdbSampler(const std::string& path, const std::string& object)
     for (int n = 0; n < int(found->levels.size()); ++n) {
         std::vector<AnyChannel>& channels = m_impl->levels.emplace_back();
         for (const GridChannel& channel : found->channels) {
-            const std::string suffix = grids.size() == 1 ? "" : object;
+            const std::string suffix = object_suffix(objects, found->object);
             channels.push_back(open_channel(file, grid_name(channel.name, suffix, n)));
         }
         const AnyChannel& first = channels.front();
