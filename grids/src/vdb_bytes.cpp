@@ -136,10 +136,17 @@ MappedFile::MappedFile(const std::string& path) {
 
 MappedFile::~MappedFile() { munmap(const_cast<char*>(m_bytes.data()), m_bytes.size()); }
 
-VdbLayout vdb_layout(const std::string& path, std::string_view bytes) {
+void MappedFile::forget(std::uint64_t from, std::uint64_t to) const noexcept {
+    const auto page = std::uint64_t(sysconf(_SC_PAGESIZE));
+    from = (from + page - 1) / page * page;
+    to = to / page * page;
+    if (from < to) madvise(const_cast<char*>(m_bytes.data()) + from, to - from, MADV_DONTNEED);
+}
+
+VdbLayout vdb_layout(const std::string& path, const MappedFile& file) {
     VdbLayout layout;
-    layout.size = bytes.size();
-    ByteCursor in(bytes);
+    layout.size = file.bytes().size();
+    ByteCursor in(file.bytes());
     try {
         read_start(path, in, layout);
         layout.digest_at = read_metadata(path, in);
@@ -151,27 +158,33 @@ VdbLayout vdb_layout(const std::string& path, std::string_view bytes) {
     return layout;
 }
 
-VdbLayout check_vdb_bytes(const std::string& path, std::string_view bytes) {
-    VdbLayout layout = vdb_layout(path, bytes);
+VdbLayout check_vdb_bytes(const std::string& path, const MappedFile& file) {
+    VdbLayout layout = vdb_layout(path, file);
     if (layout.needed > layout.size) {
         throw Error(fmt::format("{}: cut short: {} bytes of at least {}; bake it again", path,
                                 layout.size, layout.needed));
     }
     if (layout.digest_at != 0 &&
-        bytes.substr(layout.digest_at, digest_size) != vdb_digest(bytes, layout)) {
+        file.bytes().substr(layout.digest_at, digest_size) != vdb_digest(file, layout)) {
         damaged(path, "its bytes are not those that were written");
     }
     return layout;
 }
 
-std::string vdb_digest(std::string_view bytes, const VdbLayout& layout) {
+std::string vdb_digest(const MappedFile& file, const VdbLayout& layout) {
+    constexpr std::uint64_t at_once = 16 << 20;
+    const std::string_view bytes = file.bytes();
     std::string start(bytes.substr(0, layout.digest_at + digest_size));
     start.replace(uuid_at, uuid_size, uuid_size, '0');
     start.replace(layout.digest_at, digest_size, digest_size, '0');
     XXH3_state_t state;
     XXH3_64bits_reset(&state);
     XXH3_64bits_update(&state, start.data(), start.size());
-    XXH3_64bits_update(&state, bytes.data() + start.size(), bytes.size() - start.size());
+    for (std::uint64_t at = start.size(); at < bytes.size(); at += at_once) {
+        const std::string_view part = bytes.substr(at, at_once);
+        XXH3_64bits_update(&state, part.data(), part.size());
+        file.forget(at, at + part.size());
+    }
     return fmt::format("{:016x}", XXH3_64bits_digest(&state));
 }
 

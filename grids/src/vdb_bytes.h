@@ -26,6 +26,8 @@ public:
     MappedFile& operator=(const MappedFile&) = delete;
 
     std::string_view bytes() const noexcept { return m_bytes; }
+    /// Takes a range out of memory; it is read again when it is used again.
+    void forget(std::uint64_t from, std::uint64_t to) const noexcept;
 
 private:
     std::string_view m_bytes;
@@ -88,14 +90,14 @@ struct VdbLayout {
 /// file ends the reading, so this takes little memory whatever the bytes are.
 /// Error: not a .vdb, a format older or newer than OpenVDB 10 writes.
 /// @param path  for messages
-VdbLayout vdb_layout(const std::string& path, std::string_view bytes);
+VdbLayout vdb_layout(const std::string& path, const MappedFile& file);
 
 /// Throws unless the file is whole and its digest, if it has one, is that of its bytes.
 /// @return  its layout
-VdbLayout check_vdb_bytes(const std::string& path, std::string_view bytes);
+VdbLayout check_vdb_bytes(const std::string& path, const MappedFile& file);
 
 /// Digest of all bytes but the file's random id and the digest's own characters, 16 hex digits.
-std::string vdb_digest(std::string_view bytes, const VdbLayout& layout);
+std::string vdb_digest(const MappedFile& file, const VdbLayout& layout);
 
 /// An Error that names the file and says what is wrong in it.
 [[noreturn]] void damaged(const std::string& path, const std::string& what);

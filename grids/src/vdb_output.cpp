@@ -47,10 +47,12 @@ void CheckedOutput::close() {
     if (!m_file || std::filesystem::file_size(m_path, error) != m_size) fail_cut();
 }
 
-void CheckedOutput::check(std::string_view read_back) const {
-    if (read_back.size() != m_size) fail_cut();
+void CheckedOutput::check(const MappedFile& read_back) const {
+    if (read_back.bytes().size() != m_size) fail_cut();
     for (const Piece& piece : m_pieces) {
-        if (hash(read_back.substr(piece.at, piece.size)) == piece.hash) continue;
+        const bool same = hash(read_back.bytes().substr(piece.at, piece.size)) == piece.hash;
+        read_back.forget(piece.at, piece.at + piece.size);
+        if (same) continue;
         throw Error(
             fmt::format("{}: what was read back is not what was written: is the disk faulty?",
                         m_title),

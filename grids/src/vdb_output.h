@@ -29,8 +29,7 @@ public:
     /// Error (failed) if not every byte arrived.
     void close();
     /// Compares the closed file with what was written. Error (failed) if it differs.
-    /// @param read_back  its bytes
-    void check(std::string_view read_back) const;
+    void check(const MappedFile& read_back) const;
 
 private:
     struct Piece {

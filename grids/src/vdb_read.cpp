@@ -50,8 +50,8 @@ struct OpenGrid {
 /// Reads the objects of a file.
 class Reader {
 public:
-    Reader(const std::string& path, std::string_view bytes, const VdbLayout& layout)
-        : m_path(path), m_bytes(bytes) {
+    Reader(const std::string& path, const MappedFile& file, const VdbLayout& layout)
+        : m_path(path), m_file(file), m_bytes(file.bytes()) {
         for (const StoredGrid& stored : layout.grids) {
             m_grids.emplace(stored.name, open_grid(stored, layout));
         }
@@ -228,6 +228,7 @@ private:
                                           to.planes.data() + first);
                               }
                           });
+        m_file.forget(open.topology, stored.end);
     }
 
     static std::vector<Block> blocks_of(const std::vector<StoredLeaf>& leaves) {
@@ -264,6 +265,7 @@ private:
     }
 
     std::string m_path;
+    const MappedFile& m_file;
     std::string_view m_bytes;
     std::map<std::string, OpenGrid> m_grids;
     std::set<std::string> m_objects;
@@ -273,10 +275,10 @@ private:
 
 std::vector<TextureGrid> read_vdb(const std::string& path) {
     const MappedFile file(path);
-    const VdbLayout layout = check_vdb_bytes(path, file.bytes());
+    const VdbLayout layout = check_vdb_bytes(path, file);
     openvdb::initialize();
     try {
-        return Reader(path, file.bytes(), layout).objects();
+        return Reader(path, file, layout).objects();
     } catch (const openvdb::Exception& e) {
         damaged(path, reason(e));
     } catch (const std::ios::failure&) {

@@ -24,9 +24,14 @@ namespace io = openvdb::io;
 
 constexpr std::size_t most_floats = 512 * 3;
 
-/// libdeflate's levels are 1 to 12. Floats with noise in their last bits become hardly smaller
-/// with a higher one.
+/// libdeflate's levels are 1 to 12; a higher one saves two per cent of floats for half as much time
+/// again.
 constexpr int zip_level = 1;
+
+/// Values are stored as they are unless zip saves a fifth of their size. Noise in the last bits of
+/// floats lets a leaf shrink by 15 % at most, and unpacking that takes ten times as long as the
+/// rest of reading it.
+constexpr std::size_t worth_zipping(std::size_t size) { return size - size / 5; }
 
 bool has(const ValueFormat& format, std::uint32_t flag) { return (format.compression & flag) != 0; }
 
@@ -56,9 +61,8 @@ struct ValueEncoder::Impl {
     std::array<char, most_floats * sizeof(float)> packed;
 
     void append_zip(const char* data, std::size_t size, std::string& out) {
-        // What does not become smaller is stored as it is, hence no room for more.
-        const std::size_t got = libdeflate_zlib_compress(zip.get(), data, size, packed.data(),
-                                                         size == 0 ? 0 : size - 1);
+        const std::size_t got =
+            libdeflate_zlib_compress(zip.get(), data, size, packed.data(), worth_zipping(size));
         const std::int64_t told = got > 0 ? std::int64_t(got) : -std::int64_t(size);
         append_raw(&told, sizeof told, out);
         append_raw(got > 0 ? packed.data() : data, got > 0 ? got : size, out);

@@ -317,12 +317,16 @@ void add_statistics(std::uint32_t compression, GridT& grid) {
 }
 
 /// Appends a grid as OpenVDB's Archive::writeGrid() does, except that its values are not in it, and
-/// that zip serves level sets and fog volumes too.
+/// that zip serves fog volumes too: ours is constant.
 void append_grid(const Plan& plan, std::uint32_t compression, CheckedOutput& file) {
     const std::vector<const Block*> blocks =
         in_tree_order(plan.from->levels[std::size_t(plan.level)]);
     std::vector<BlockMask> inside;
     const GridBase::Ptr grid = plan.shell(blocks, inside);
+    // Neither does OpenVDB zip distances: they do not shrink.
+    if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
+        compression &= ~std::uint32_t{openvdb::io::COMPRESS_ZIP};
+    }
     grid->setName(plan.name);
     if (const auto colors = openvdb::gridPtrCast<Vec3SGrid>(grid)) {
         add_statistics(compression, *colors);
@@ -362,13 +366,13 @@ void check_and_seal(const std::string& path, const std::string& temporary, std::
     std::string digest;
     {
         const MappedFile file(temporary);
-        output.check(file.bytes());
-        layout = vdb_layout(path, file.bytes());
+        output.check(file);
+        layout = vdb_layout(path, file);
         const bool whole = layout.needed == layout.size && layout.grids.size() == grids;
         if (!whole || layout.digest_at == 0) {
             throw std::logic_error("write_vdb: the list of grids is not what was written");
         }
-        digest = vdb_digest(file.bytes(), layout);
+        digest = vdb_digest(file, layout);
     }
     std::fstream file(temporary, std::ios::binary | std::ios::in | std::ios::out);
     file.seekp(std::streamoff(layout.digest_at));
