@@ -11,6 +11,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -221,8 +222,8 @@ std::vector<Plan> plans(const std::string& path, const std::vector<TextureGrid>&
     std::set<std::string> names;
     for (const Plan& plan : result) {
         if (names.insert(plan.name).second) continue;
-        throw Error(fmt::format("{}: two grids would be called \"{}\"; rename {}", path, plan.name,
-                                objects.size() == grids.size() ? "an object" : "a channel"));
+        throw Error(
+            fmt::format("{}: two grids would be called \"{}\"; rename an object", path, plan.name));
     }
     return result;
 }
@@ -276,33 +277,28 @@ void append_leaves(const Plan& plan, const std::vector<const Block*>& blocks,
                    const std::vector<BlockMask>& inside, const ValueFormat& format,
                    CheckedOutput& file) {
     constexpr std::size_t at_once = 512;  // a megabyte of colours
-    const std::size_t in_flight = 4 * std::size_t(tbb::this_task_arena::max_concurrency());
     std::size_t next = 0;
+    const auto some = [&](tbb::flow_control& control) {
+        const std::size_t first = next;
+        if (first >= blocks.size()) control.stop();
+        next += at_once;
+        return first;
+    };
+    const auto packed = [&](std::size_t first) {
+        std::string bytes;
+        ValueEncoder encoder(format);
+        for (std::size_t b = first; b < std::min(first + at_once, blocks.size()); ++b) {
+            append_leaf(plan, *blocks[b], inside.empty() ? BlockMask{} : inside[b], encoder, bytes);
+        }
+        return bytes;
+    };
+    const auto write = [&](const std::string& bytes) { file.append(bytes); };
+    using tbb::filter_mode;
     tbb::parallel_pipeline(
-        in_flight, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                                       [&](tbb::flow_control& control) {
-                                                           const std::size_t first = next;
-                                                           if (first >= blocks.size())
-                                                               control.stop();
-                                                           next += at_once;
-                                                           return first;
-                                                       }) &
-                       tbb::make_filter<std::size_t, std::string>(
-                           tbb::filter_mode::parallel,
-                           [&](std::size_t first) {
-                               std::string bytes;
-                               ValueEncoder encoder(format);
-                               const std::size_t end = std::min(first + at_once, blocks.size());
-                               for (std::size_t b = first; b < end; ++b) {
-                                   const BlockMask none,
-                                       &within = inside.empty() ? none : inside[b];
-                                   append_leaf(plan, *blocks[b], within, encoder, bytes);
-                               }
-                               return bytes;
-                           }) &
-                       tbb::make_filter<std::string, void>(
-                           tbb::filter_mode::serial_in_order,
-                           [&](const std::string& bytes) { file.append(bytes); }));
+        4 * std::size_t(tbb::this_task_arena::max_concurrency()),
+        tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, some) &
+            tbb::make_filter<std::size_t, std::string>(filter_mode::parallel, packed) &
+            tbb::make_filter<std::string, void>(filter_mode::serial_in_order, write));
 }
 
 /// What OpenVDB adds to a grid's metadata when it writes one.
@@ -399,8 +395,8 @@ std::uint64_t write_vdb(const std::string& path, const std::vector<TextureGrid>&
         const auto count = std::int32_t(plan.size());
         start.write(reinterpret_cast<const char*>(&count), sizeof count);
         file.append(start.view());
-        for (const Plan& grid : plan)
-            append_grid(grid, compression_flags(options.compression), file);
+        const std::uint32_t compression = compression_flags(options.compression);
+        for (const Plan& grid : plan) append_grid(grid, compression, file);
     } catch (const openvdb::Exception& e) {
         throw Error(fmt::format("{}: it cannot be written: {}", path, reason(e)),
                     ExitStatus::failed);

@@ -99,6 +99,8 @@ TEST(VdbFile, HoldsSeveralShadersOfAnObjectUnderPlainNames) {
     EXPECT_EQ(bytes.find("_vase"), std::string::npos);
     EXPECT_EQ(VdbSampler(path, "").levels(), int(grids[0].levels.size()));
     EXPECT_EQ(VdbSampler(path, "vase", "irradiance").levels(), int(grids[1].levels.size()));
+    EXPECT_EQ(error_of([&] { VdbSampler s(path, "vase", "stone"); }),
+              path + ": object \"vase\" has no colours of shader \"stone\"");
 }
 
 TEST(VdbFile, HoldsSeveralShadersOfSeveralObjects) {
