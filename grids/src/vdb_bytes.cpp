@@ -10,11 +10,14 @@
 // begins at that end. Everything is little-endian.
 #include "vdb_bytes.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
+#include <cerrno>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -28,87 +31,29 @@ constexpr std::int64_t magic = 0x56444220;
 constexpr std::uint32_t oldest_format = 222, newest_format = 224;
 constexpr std::uint64_t uuid_at = 21, uuid_size = 36;  // random, so not part of the digest
 constexpr std::uint64_t digest_size = 16;
+constexpr std::string_view half_suffix = "_HalfFloat";
 
-/// Thrown when a read would leave the file; never leaves this source file.
-struct Cut {
-    std::uint64_t needed;
-};
-
-[[noreturn]] void damaged(const std::string& path, const std::string& what) {
-    throw Error(fmt::format("{}: damaged: {}; bake it again", path, what));
-}
-
-/// A position in a file that cannot leave it.
-class Cursor {
-public:
-    Cursor(const std::string& path, std::uint64_t size)
-        : m_path(path), m_stream(path, std::ios::binary), m_size(size) {}
-
-    std::uint64_t at() const noexcept { return m_at; }
-
-    void seek(std::uint64_t at) {
-        if (at > m_size) throw Cut{at};
-        m_at = at;
-        m_stream.seekg(std::streamoff(at));
-    }
-    void skip(std::uint64_t bytes) { seek(m_at + bytes); }
-    template <class T>
-    T number() {
-        T value{};
-        read(&value, sizeof value);
-        return value;
-    }
-    std::string text() {
-        constexpr std::uint32_t longest = 1 << 16;  // all texts read here are names
-        const auto length = number<std::uint32_t>();
-        if (length > m_size - m_at) throw Cut{m_at + length};
-        if (length > longest) damaged(m_path, fmt::format("a name of {} characters", length));
-        std::string s(length, '\0');
-        read(s.data(), length);
-        return s;
-    }
-
-private:
-    void read(void* out, std::uint64_t bytes) {
-        if (bytes > m_size - m_at) throw Cut{m_at + bytes};
-        if (!m_stream.read(static_cast<char*>(out), std::streamsize(bytes))) {
-            throw Error(fmt::format("{}: it cannot be read", m_path), ExitStatus::failed);
-        }
-        m_at += bytes;
-    }
-
-    std::string m_path;
-    std::ifstream m_stream;
-    std::uint64_t m_size, m_at = 0;
-};
-
-std::uint64_t size_of(const std::string& path) {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw Error(fmt::format("{}: no such file", path));
-    if (!fs::is_regular_file(status)) throw Error(fmt::format("{}: not a file", path));
-    const std::uint64_t size = fs::file_size(path, error);
-    if (error || !std::ifstream(path, std::ios::binary)) {
-        throw Error(fmt::format("{}: it cannot be read: {}", path,
-                                error ? error.message() : "permission denied"));
-    }
-    if (size == 0) throw Error(fmt::format("{}: the file is empty", path));
-    return size;
+std::string text(const std::string& path, ByteCursor& in) {
+    constexpr std::uint32_t longest = 1 << 16;  // all texts read here are names
+    const auto length = in.number<std::uint32_t>();
+    const std::string_view bytes = in.take(length);
+    if (length > longest) damaged(path, fmt::format("a name of {} characters", length));
+    return std::string(bytes);
 }
 
 [[noreturn]] void not_a_vdb(const std::string& path) {
     throw Error(fmt::format("{}: not a .vdb file", path));
 }
 
-void read_start(const std::string& path, Cursor& in) {
+void read_start(const std::string& path, ByteCursor& in, VdbLayout& layout) {
     if (in.number<std::int64_t>() != magic) not_a_vdb(path);
-    const auto format = in.number<std::uint32_t>();
-    if (format < oldest_format || format > newest_format) {
-        throw Error(fmt::format("{}: .vdb format {}; this program reads {} to {}", path, format,
-                                oldest_format, newest_format));
+    layout.format = in.number<std::uint32_t>();
+    if (layout.format < oldest_format || layout.format > newest_format) {
+        throw Error(fmt::format("{}: .vdb format {}; this program reads {} to {}", path,
+                                layout.format, oldest_format, newest_format));
     }
-    in.skip(8);
+    layout.library_major = in.number<std::uint32_t>();
+    layout.library_minor = in.number<std::uint32_t>();
     if (in.number<char>() != 1) {
         throw Error(
             fmt::format("{}: a .vdb stream without positions; not made by estara-bake", path));
@@ -117,11 +62,11 @@ void read_start(const std::string& path, Cursor& in) {
 }
 
 /// @return  where the digest is, or 0
-std::uint64_t read_metadata(Cursor& in) {
+std::uint64_t read_metadata(const std::string& path, ByteCursor& in) {
     std::uint64_t digest_at = 0;
     const auto count = in.number<std::uint32_t>();
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::string name = in.text(), type = in.text();
+        const std::string name = text(path, in), type = text(path, in);
         const auto length = in.number<std::uint32_t>();
         if (name == digest_key && type == "string" && length == digest_size) digest_at = in.at();
         in.skip(length);
@@ -129,59 +74,82 @@ std::uint64_t read_metadata(Cursor& in) {
     return digest_at;
 }
 
-void read_grids(const std::string& path, Cursor& in, VdbLayout& layout) {
+void read_grids(const std::string& path, ByteCursor& in, VdbLayout& layout) {
     const auto count = in.number<std::int32_t>();
     for (std::int32_t i = 0; i < count; ++i) {
-        std::string name = in.text();
-        name = name.substr(0, name.find('\x1e'));  // what follows tells grids of one name apart
-        in.text();
-        in.text();
+        StoredGrid grid;
+        grid.name = text(path, in);
+        grid.name = grid.name.substr(0, grid.name.find('\x1e'));  // then a number, if not unique
+        grid.type = text(path, in);
+        if (grid.type.ends_with(half_suffix)) {
+            grid.half = true;
+            grid.type.resize(grid.type.size() - half_suffix.size());
+        }
+        grid.is_instance = !text(path, in).empty();
         const auto data = in.number<std::int64_t>(), buffers = in.number<std::int64_t>(),
                    end = in.number<std::int64_t>();
         if (data < std::int64_t(in.at()) || buffers < data || end < buffers) {
-            damaged(path, fmt::format("the position of grid \"{}\" makes no sense", clamped(name)));
+            damaged(path,
+                    fmt::format("the position of grid \"{}\" makes no sense", clamped(grid.name)));
         }
-        in.seek(std::uint64_t(end));
-        in.seek(std::uint64_t(data));
-        in.skip(4);         // how it is compressed
-        read_metadata(in);  // its lengths must be sound: OpenVDB allocates what they say
-        in.seek(std::uint64_t(end));
-        layout.grids.push_back(std::move(name));
+        grid.data = std::uint64_t(data);
+        grid.buffers = std::uint64_t(buffers);
+        grid.end = std::uint64_t(end);
+        in.seek(grid.end);
+        in.seek(grid.data);
+        in.skip(4);               // how it is compressed
+        read_metadata(path, in);  // its lengths must be sound: OpenVDB allocates what they say
+        in.seek(grid.end);
+        layout.grids.push_back(std::move(grid));
     }
     layout.needed = in.at();
 }
 
-/// Digest of all bytes but the file's random id and the digest's own characters.
-std::string digest_of(const std::string& path, const VdbLayout& layout) {
-    std::ifstream in(path, std::ios::binary);
-    XXH3_state_t state;
-    XXH3_64bits_reset(&state);
-    std::vector<char> buffer(1 << 20);
-    std::uint64_t at = 0;
-    while (in.read(buffer.data(), std::streamsize(buffer.size())) || in.gcount() > 0) {
-        const auto got = std::uint64_t(in.gcount());
-        const auto blank = [&](std::uint64_t from, std::uint64_t bytes) {
-            for (std::uint64_t i = std::max(from, at); i < std::min(from + bytes, at + got); ++i) {
-                buffer[i - at] = '0';
-            }
-        };
-        blank(uuid_at, uuid_size);
-        blank(layout.digest_at, digest_size);
-        XXH3_64bits_update(&state, buffer.data(), got);
-        at += got;
-    }
-    return fmt::format("{:016x}", XXH3_64bits_digest(&state));
-}
-
 }  // namespace
 
-VdbLayout vdb_layout(const std::string& path) {
+MappedFile::MappedFile(const std::string& path) {
+    const auto check = [&](bool fine) {
+        if (!fine) {
+            throw Error(fmt::format("{}: it cannot be read: {}", path, std::strerror(errno)));
+        }
+    };
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0 && (errno == ENOENT || errno == ENOTDIR)) {
+        throw Error(fmt::format("{}: no such file", path));
+    }
+    check(file >= 0);
+    struct stat status {};
+    const bool known = fstat(file, &status) == 0;
+    const auto size = std::size_t(status.st_size);
+    const bool is_file = known && S_ISREG(status.st_mode);
+    void* start =
+        is_file && size > 0 ? mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0) : nullptr;
+    const int error = errno;
+    close(file);
+    errno = error;
+    check(known && start != MAP_FAILED);
+    if (!is_file) throw Error(fmt::format("{}: not a file", path));
+    if (size == 0) throw Error(fmt::format("{}: the file is empty", path));
+    madvise(start, size, MADV_WILLNEED);
+    m_bytes = {static_cast<const char*>(start), size};
+}
+
+MappedFile::~MappedFile() { munmap(const_cast<char*>(m_bytes.data()), m_bytes.size()); }
+
+void MappedFile::forget(std::uint64_t from, std::uint64_t to) const noexcept {
+    const auto page = std::uint64_t(sysconf(_SC_PAGESIZE));
+    from = (from + page - 1) / page * page;
+    to = to / page * page;
+    if (from < to) madvise(const_cast<char*>(m_bytes.data()) + from, to - from, MADV_DONTNEED);
+}
+
+VdbLayout vdb_layout(const std::string& path, const MappedFile& file) {
     VdbLayout layout;
-    layout.size = size_of(path);
-    Cursor in(path, layout.size);
+    layout.size = file.bytes().size();
+    ByteCursor in(file.bytes());
     try {
-        read_start(path, in);
-        layout.digest_at = read_metadata(in);
+        read_start(path, in, layout);
+        layout.digest_at = read_metadata(path, in);
         read_grids(path, in, layout);
     } catch (const Cut& cut) {
         if (layout.size < sizeof magic) not_a_vdb(path);
@@ -190,30 +158,38 @@ VdbLayout vdb_layout(const std::string& path) {
     return layout;
 }
 
-VdbLayout check_vdb_bytes(const std::string& path) {
-    VdbLayout layout = vdb_layout(path);
+VdbLayout check_vdb_bytes(const std::string& path, const MappedFile& file) {
+    VdbLayout layout = vdb_layout(path, file);
     if (layout.needed > layout.size) {
         throw Error(fmt::format("{}: cut short: {} bytes of at least {}; bake it again", path,
                                 layout.size, layout.needed));
     }
-    if (layout.digest_at != 0) {
-        Cursor in(path, layout.size);
-        in.seek(layout.digest_at);
-        std::string told(digest_size, '\0');
-        for (char& c : told) c = in.number<char>();
-        if (told != digest_of(path, layout))
-            damaged(path, "its bytes are not those that were written");
+    if (layout.digest_at != 0 &&
+        file.bytes().substr(layout.digest_at, digest_size) != vdb_digest(file, layout)) {
+        damaged(path, "its bytes are not those that were written");
     }
     return layout;
 }
 
-void seal_vdb(const std::string& path, const VdbLayout& layout) {
-    const std::string digest = digest_of(path, layout);
-    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(std::streamoff(layout.digest_at));
-    file.write(digest.data(), std::streamsize(digest.size()));
-    file.close();
-    if (!file) throw Error(fmt::format("{}: it cannot be written", path), ExitStatus::failed);
+std::string vdb_digest(const MappedFile& file, const VdbLayout& layout) {
+    constexpr std::uint64_t at_once = 16 << 20;
+    const std::string_view bytes = file.bytes();
+    std::string start(bytes.substr(0, layout.digest_at + digest_size));
+    start.replace(uuid_at, uuid_size, uuid_size, '0');
+    start.replace(layout.digest_at, digest_size, digest_size, '0');
+    XXH3_state_t state;
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, start.data(), start.size());
+    for (std::uint64_t at = start.size(); at < bytes.size(); at += at_once) {
+        const std::string_view part = bytes.substr(at, at_once);
+        XXH3_64bits_update(&state, part.data(), part.size());
+        file.forget(at, at + part.size());
+    }
+    return fmt::format("{:016x}", XXH3_64bits_digest(&state));
+}
+
+void damaged(const std::string& path, const std::string& what) {
+    throw Error(fmt::format("{}: damaged: {}; bake it again", path, what));
 }
 
 std::string clamped(const std::string& text) {

@@ -1,28 +1,32 @@
 // A .vdb file to TextureGrid.
+//
+// OpenVDB reads what a grid says of itself; voxels and values are taken from the file's bytes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <openvdb/io/File.h>
+#include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <boost/interprocess/streams/bufferstream.hpp>
 #include <cmath>
+#include <map>
 #include <new>
+#include <set>
 
 #include "blocks.h"
 #include "estara/scenes/error.h"
 #include "vdb_bytes.h"
 #include "vdb_names.h"
+#include "vdb_tree.h"
 
 namespace estara {
 namespace {
 
-using openvdb::Coord;
-using openvdb::FloatGrid;
 using openvdb::GridBase;
 using openvdb::Vec3s;
-using openvdb::Vec3SGrid;
 
-constexpr int max_index = 1 << 30;
 constexpr int max_levels = 31;
 
 std::vector<std::string> split(const std::string& list) {
@@ -35,20 +39,35 @@ std::vector<std::string> split(const std::string& list) {
     return words;
 }
 
-/// Reads the objects of an open file.
+/// A grid without its tree, and where that is.
+struct OpenGrid {
+    const StoredGrid* stored = nullptr;
+    GridBase::Ptr grid;
+    std::uint32_t compression = 0;
+    std::uint64_t topology = 0;  ///< position of the tree's first byte
+};
+
+/// Reads the objects of a file.
 class Reader {
 public:
-    explicit Reader(const std::string& path) : m_path(path), m_file(path) { m_file.open(false); }
+    Reader(const std::string& path, const MappedFile& file, const VdbLayout& layout)
+        : m_path(path), m_file(file), m_bytes(file.bytes()) {
+        for (const StoredGrid& stored : layout.grids) {
+            m_grids.emplace(stored.name, open_grid(stored, layout));
+        }
+    }
 
     std::vector<TextureGrid> objects() {
-        std::map<std::string, GridBase::ConstPtr> heads;  // of each object, one that describes it
+        // Of each object and shader, one that describes it.
+        std::map<std::pair<std::string, std::string>, const GridBase*> heads;
         std::vector<std::string> names;
-        const openvdb::GridPtrVecPtr all = m_file.readAllGridMetadata();
-        for (const GridBase::Ptr& grid : *all) {
-            names.push_back(clamped(grid->getName()));
-            if (grid->getMetadata<openvdb::StringMetadata>(key::shader)) {
-                heads.emplace(meta<std::string>(*grid, key::object), grid);
-            }
+        for (const auto& [name, open] : m_grids) {
+            names.push_back(clamped(name));
+            const auto shader = open.grid->getMetadata<openvdb::StringMetadata>(key::shader);
+            if (!shader) continue;
+            const auto object = meta<std::string>(*open.grid, key::object);
+            heads.emplace(std::pair{object, shader->value()}, open.grid.get());
+            m_objects.insert(object);
         }
         if (heads.empty()) {
             if (names.size() > 10) names.resize(10);
@@ -56,15 +75,32 @@ public:
             throw Error(fmt::format("{}: not made by estara-bake (no grid has {}); it has: {}",
                                     m_path, key::shader, fmt::join(names, ", ")));
         }
-        m_is_alone = heads.size() == 1;
         std::vector<TextureGrid> grids;
-        for (const auto& [object, head] : heads) grids.push_back(read_object(*head));
+        for (const auto& [of, head] : heads) grids.push_back(read_object(*head));
         return grids;
     }
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
         throw Error(fmt::format("{}: {}; bake it again", m_path, what));
+    }
+
+    OpenGrid open_grid(const StoredGrid& stored, const VdbLayout& layout) const {
+        OpenGrid open;
+        open.stored = &stored;
+        open.grid = GridBase::createGrid(stored.type);
+        open.grid->setSaveFloatAsHalf(stored.half);
+        ByteCursor in(m_bytes, stored.data);
+        open.compression = in.number<std::uint32_t>();
+        boost::interprocess::ibufferstream stream(m_bytes.data() + in.at(),
+                                                  stored.buffers - in.at());
+        stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+        openvdb::io::setVersion(stream, {layout.library_major, layout.library_minor},
+                                layout.format);
+        open.grid->readMeta(stream);
+        open.grid->readTransform(stream);
+        open.topology = in.at() + std::uint64_t(stream.tellg());
+        return open;
     }
 
     template <class T>
@@ -83,6 +119,9 @@ private:
         to.shader_digest = meta<std::string>(head, key::shader_digest);
         to.mesh_digest = meta<std::string>(head, key::mesh_digest);
         to.tool_version = meta<std::string>(head, key::version);
+        if (head.getMetadata<openvdb::StringMetadata>(key::lights_digest)) {
+            to.lights_digest = meta<std::string>(head, key::lights_digest);
+        }
         read_params(head, to);
         const openvdb::Vec3d origin = head.transform().indexToWorld(openvdb::Vec3d(0.0));
         to.origin = {origin.x(), origin.y(), origin.z()};
@@ -119,24 +158,27 @@ private:
     /// Reads one level of the last channel of `to`.
     void read_channel(int level, TextureGrid& to) {
         GridChannel& channel = to.channels.back();
-        const std::string name = grid_name(channel.name, m_is_alone ? "" : to.object, level);
-        if (!m_file.hasGrid(name)) fail(fmt::format("grid \"{}\" is missing", clamped(name)));
-        const GridBase::ConstPtr grid = m_file.readGrid(name);
-        const auto colors = openvdb::gridConstPtrCast<Vec3SGrid>(grid);
-        const auto numbers = openvdb::gridConstPtrCast<FloatGrid>(grid);
-        const int components = colors ? 3 : numbers ? 1 : 0;
+        const std::string name =
+            grid_name(channel.name, object_suffix(m_objects, to.object), level);
+        const auto found = m_grids.find(name);
+        if (found == m_grids.end()) fail(fmt::format("grid \"{}\" is missing", clamped(name)));
+        const OpenGrid& open = found->second;
+        const int components = open.grid->isType<openvdb::Vec3SGrid>()   ? 3
+                               : open.grid->isType<openvdb::FloatGrid>() ? 1
+                                                                         : 0;
         if (level == 0) channel.components = components;
         if (components == 0 || components != channel.components) {
-            fail(
-                fmt::format("grid \"{}\" has values of type {}", clamped(name), grid->valueType()));
+            fail(fmt::format("grid \"{}\" has values of type {}", clamped(name),
+                             open.grid->valueType()));
         }
-        GridLevel& out = to.levels[std::size_t(level)];
-        if (colors) {
-            take_values(name, *colors, 3, out);
-        } else {
-            take_values(name, *numbers, 1, out);
+        try {
+            take_planes(open, components, to.levels[std::size_t(level)]);
+        } catch (const BadTree& bad) {
+            fail(fmt::format("grid \"{}\" {}", clamped(name), bad.what));
+        } catch (const Cut&) {
+            fail(fmt::format("grid \"{}\" is damaged", clamped(name)));
         }
-        if (level == 0) read_errors(*grid, to);
+        if (level == 0) read_errors(*open.grid, to);
     }
 
     void read_errors(const GridBase& grid, TextureGrid& to) const {
@@ -154,85 +196,93 @@ private:
 
     /// Appends a grid's planes to a level. The first channel says which voxels there are; the
     /// others must have the same.
-    template <class GridT>
-    void take_values(const std::string& name, const GridT& grid, std::size_t components,
-                     GridLevel& to) const {
-        using Leaf = typename GridT::TreeType::LeafNodeType;
-        std::vector<const Leaf*> leaves;
-        grid.tree().getNodes(leaves);
-        std::erase_if(leaves, [](const Leaf* leaf) { return leaf->isEmpty(); });
-        std::sort(leaves.begin(), leaves.end(),
-                  [](const Leaf* a, const Leaf* b) { return a->origin() < b->origin(); });
-        if (grid.tree().hasActiveTiles())
-            fail(fmt::format("grid \"{}\" was pruned", clamped(name)));
-        std::vector<Block> blocks = blocks_of(name, leaves);
-        if (to.planes.empty())
-            to.blocks = std::move(blocks);
-        else
-            check_same_voxels(name, blocks, to.blocks);
-        const std::size_t first = to.planes.size();
-        to.planes.resize(first + components, std::vector<float>(to.voxels()));
-        tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t b) {
-            std::uint64_t row = to.blocks[b].first;
-            for (auto it = leaves[b]->cbeginValueOn(); it; ++it, ++row) {
-                const auto value = *it;
-                if constexpr (std::is_same_v<GridT, Vec3SGrid>) {
-                    for (std::size_t c = 0; c < 3; ++c) to.planes[first + c][row] = value[int(c)];
-                } else {
-                    to.planes[first][row] = value;
-                }
-            }
+    void take_planes(const OpenGrid& open, int components, GridLevel& to) const {
+        const StoredGrid& stored = *open.stored;
+        if (stored.is_instance) throw BadTree{"has no voxels of its own"};
+        const ValueFormat format{open.compression, components, stored.half};
+        std::vector<StoredLeaf> leaves =
+            read_leaves(ByteCursor(m_bytes.substr(0, stored.buffers), open.topology),
+                        ByteCursor(m_bytes.substr(0, stored.end), stored.buffers), format);
+        std::erase_if(leaves, [](const StoredLeaf& leaf) { return !leaf.active.any(); });
+        if (leaves.empty()) throw BadTree{"has no voxels"};
+        std::sort(leaves.begin(), leaves.end(), [](const StoredLeaf& a, const StoredLeaf& b) {
+            return comes_before(a.origin, b.origin);
         });
+        if (to.planes.empty()) {
+            to.blocks = blocks_of(leaves);
+        } else if (!std::equal(leaves.begin(), leaves.end(), to.blocks.begin(), to.blocks.end(),
+                               [](const StoredLeaf& p, const Block& q) {
+                                   return p.origin == q.origin && p.active == q.active;
+                               })) {
+            throw BadTree{"has other voxels than its fellows"};
+        }
+        const std::size_t first = to.planes.size(), count = std::size_t(components);
+        to.planes.resize(first + count);
+        tbb::parallel_for(std::size_t{0}, count,
+                          [&](std::size_t c) { to.planes[first + c].resize(to.voxels()); });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 64),
+                          [&](const tbb::blocked_range<std::size_t>& some) {
+                              ValueDecoder decoder(format);
+                              for (std::size_t b = some.begin(); b != some.end(); ++b) {
+                                  scatter(leaves[b], to.blocks[b].first, decoder, count,
+                                          to.planes.data() + first);
+                              }
+                          });
+        m_file.forget(open.topology, stored.end);
     }
 
-    template <class Leaf>
-    std::vector<Block> blocks_of(const std::string& name,
-                                 const std::vector<const Leaf*>& leaves) const {
-        if (leaves.empty()) fail(fmt::format("grid \"{}\" has no voxels", clamped(name)));
+    static std::vector<Block> blocks_of(const std::vector<StoredLeaf>& leaves) {
         std::vector<Block> blocks(leaves.size());
         std::uint64_t rows = 0;
         for (std::size_t b = 0; b < leaves.size(); ++b) {
-            const Coord o = leaves[b]->origin();
-            blocks[b].origin = {o.x(), o.y(), o.z()};
-            for (openvdb::Index w = 0; w < 8; ++w) {
-                blocks[b].active.words[w] =
-                    leaves[b]->getValueMask().template getWord<std::uint64_t>(w);
-            }
-            blocks[b].first = rows;
-            rows += std::uint64_t(blocks[b].active.count());
-            for (int axis = 0; axis < 3; ++axis) {
-                if (o[axis] < 0 || o[axis] >= max_index) {
-                    fail(fmt::format("grid \"{}\" has voxels out of range", clamped(name)));
-                }
-            }
+            if (b > 0 && leaves[b].origin == leaves[b - 1].origin) throw BadTree{"is damaged"};
+            blocks[b] = {leaves[b].origin, leaves[b].active, rows};
+            rows += std::uint64_t(leaves[b].active.count());
         }
         return blocks;
     }
 
-    void check_same_voxels(const std::string& name, const std::vector<Block>& a,
-                           const std::vector<Block>& b) const {
-        const bool same =
-            std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Block& p, const Block& q) {
-                return p.origin == q.origin && p.active == q.active;
-            });
-        if (!same)
-            fail(fmt::format("grid \"{}\" has other voxels than its fellows", clamped(name)));
+    /// Puts the active values of a leaf into rows of planes.
+    static void scatter(const StoredLeaf& leaf, std::uint64_t row, ValueDecoder& decoder,
+                        std::size_t components, std::vector<float>* planes) {
+        std::array<float, 512 * 3> values;
+        const bool has_all = leaf.values.has_inactive;
+        const auto stored = has_all ? std::size_t{512} : std::size_t(leaf.active.count());
+        if (!decoder.decode(leaf.values, stored, values.data())) throw BadTree{"is damaged"};
+        std::size_t from = 0;
+        const auto put = [&](std::size_t value) {
+            for (std::size_t c = 0; c < components; ++c) {
+                planes[c][row] = values[value * components + c];
+            }
+            ++row;
+        };
+        if (has_all) {
+            for_each_bit(leaf.active,
+                         [&](int x, int y, int z) { put(std::size_t(BlockMask::bit(x, y, z))); });
+        } else {
+            while (from < stored) put(from++);
+        }
     }
 
     std::string m_path;
-    openvdb::io::File m_file;
-    bool m_is_alone = false;  // one object: grids have plain names
+    const MappedFile& m_file;
+    std::string_view m_bytes;
+    std::map<std::string, OpenGrid> m_grids;
+    std::set<std::string> m_objects;
 };
 
 }  // namespace
 
 std::vector<TextureGrid> read_vdb(const std::string& path) {
-    const VdbLayout layout = check_vdb_bytes(path);
+    const MappedFile file(path);
+    const VdbLayout layout = check_vdb_bytes(path, file);
     openvdb::initialize();
     try {
-        return Reader(path).objects();
+        return Reader(path, file, layout).objects();
     } catch (const openvdb::Exception& e) {
-        throw Error(fmt::format("{}: damaged: {}; bake it again", path, reason(e)));
+        damaged(path, reason(e));
+    } catch (const std::ios::failure&) {
+        damaged(path, "the metadata of a grid");
     } catch (const std::bad_alloc&) {
         if (layout.digest_at != 0) throw;  // its bytes are right: there is too little memory
         throw Error(fmt::format("{}: damaged, or too large for the memory there is", path));

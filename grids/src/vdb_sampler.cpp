@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "estara/grids/texture_grid.h"
@@ -71,24 +72,33 @@ struct VdbSampler::Impl {
     std::vector<openvdb::math::Transform::ConstPtr> transforms;
 };
 
-VdbSampler::VdbSampler(const std::string& path, const std::string& object)
+VdbSampler::VdbSampler(const std::string& path, const std::string& object,
+                       const std::string& shader)
     : m_impl(std::make_unique<Impl>()) {
     const std::vector<TextureGrid> grids = read_vdb(path);  // makes sure that all is there
-    const auto found = std::find_if(grids.begin(), grids.end(), [&](const TextureGrid& grid) {
-        return grid.object == object || (object.empty() && grids.size() == 1);
-    });
-    if (found == grids.end()) {
+    std::set<std::string> objects;
+    for (const TextureGrid& grid : grids) objects.insert(grid.object);
+    const std::string& wanted = object.empty() && objects.size() == 1 ? *objects.begin() : object;
+    if (!objects.contains(wanted)) {
         std::vector<std::string> names;
-        for (const TextureGrid& grid : grids) names.push_back('"' + grid.object + '"');
+        for (const std::string& name : objects) names.push_back('"' + name + '"');
         throw Error(
             fmt::format("{}: no object \"{}\"; it has: {}", path, object, fmt::join(names, ", ")));
+    }
+    const auto found = std::find_if(grids.begin(), grids.end(), [&](const TextureGrid& grid) {
+        return grid.object == wanted &&
+               (shader.empty() ? grid.shader != "irradiance" : grid.shader == shader);
+    });
+    if (found == grids.end()) {
+        throw Error(
+            fmt::format("{}: object \"{}\" has no colours of shader \"{}\"", path, wanted, shader));
     }
     openvdb::io::File file(path);
     file.open(false);
     for (int n = 0; n < int(found->levels.size()); ++n) {
         std::vector<AnyChannel>& channels = m_impl->levels.emplace_back();
         for (const GridChannel& channel : found->channels) {
-            const std::string suffix = grids.size() == 1 ? "" : object;
+            const std::string suffix = object_suffix(objects, wanted);
             channels.push_back(open_channel(file, grid_name(channel.name, suffix, n)));
         }
         const AnyChannel& first = channels.front();

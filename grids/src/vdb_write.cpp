@@ -1,60 +1,40 @@
-// TextureGrid to OpenVDB grids to a .vdb file.
+// TextureGrid to a .vdb file.
+//
+// OpenVDB makes the header, the metadata and the topology, a grid at a time; the values go from the
+// planes to the file in small pieces, packed by all threads.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <openvdb/io/File.h>
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/Compression.h>
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/SignedFloodFill.h>
-#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
-
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 #include "blocks.h"
 #include "estara/scenes/program.h"
 #include "vdb_bytes.h"
 #include "vdb_names.h"
+#include "vdb_output.h"
+#include "vdb_shell.h"
+#include "vdb_values.h"
 
 namespace estara {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 using openvdb::GridBase;
 using openvdb::Vec3s;
 using openvdb::Vec3SGrid;
-
-/// A tree with the level's voxels, leaf by leaf.
-/// @param value  value(row) of the active voxel of that row
-template <class GridT, class Value>
-typename GridT::Ptr build(const GridLevel& level, const typename GridT::ValueType& background,
-                          const Value& value) {
-    using Leaf = typename GridT::TreeType::LeafNodeType;
-    std::vector<std::unique_ptr<Leaf>> leaves(level.blocks.size());
-    tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t b) {
-        const Block& block = level.blocks[b];
-        const Coord origin(block.origin.x, block.origin.y, block.origin.z);
-        leaves[b] = std::make_unique<Leaf>(origin, background, false);
-        typename Leaf::NodeMaskType mask;
-        for (openvdb::Index w = 0; w < 8; ++w) {
-            mask.template getWord<std::uint64_t>(w) = block.active.words[w];
-        }
-        leaves[b]->setValueMask(mask);
-        std::uint64_t row = block.first;
-        for_each_bit(block.active, [&](int x, int y, int z) {
-            const auto bit = openvdb::Index(BlockMask::bit(x, y, z));
-            leaves[b]->buffer().setValue(bit, value(row++));
-        });
-    });
-    auto grid = GridT::create(background);
-    for (std::unique_ptr<Leaf>& leaf : leaves) grid->tree().addLeaf(leaf.release());
-    return grid;
-}
 
 template <class T>
 void put(GridBase& to, const std::string& name, const T& value) {
@@ -75,6 +55,7 @@ void describe(const TextureGrid& from, int level, bool half, GridBase& to) {
     put(to, key::shader_digest, from.shader_digest);
     put(to, key::mesh_digest, from.mesh_digest);
     put(to, key::object, from.object);
+    if (!from.lights_digest.empty()) put(to, key::lights_digest, from.lights_digest);
     put(to, key::closed, from.closed);
     put(to, key::voxel_size, from.voxel_size);
     put(to, key::level, std::int32_t(level));
@@ -101,35 +82,53 @@ void describe_errors(const ErrorFigures& errors, GridBase& to) {
     put(to, key::error_samples, std::int64_t(errors.samples));
 }
 
-/// One grid that is to be: its name and how to build it.
+/// A grid that is to be: what it says of itself, and its values.
 struct Plan {
     std::string name;
-    std::function<GridBase::Ptr()> build;
+    const TextureGrid* from;
+    int level;
+    int components;
+    /// All but the values. May set `inside`: voxels of each block whose value is -background.
+    std::function<GridBase::Ptr(const std::vector<const Block*>&, std::vector<BlockMask>& inside)>
+        shell;
+    /// Writes values of active voxels, `components` floats each.
+    std::function<void(std::uint64_t row, std::size_t count, float* out)> values;
 };
 
-GridBase::Ptr build_channel(const TextureGrid& from, int level, std::size_t channel,
-                            std::size_t first_float, const std::vector<float>& means, bool half) {
-    const GridLevel& source = from.levels[std::size_t(level)];
-    const auto stored = [half](float v) { return half ? nearest_half(v) : v; };
-    const auto* plane = source.planes.data() + first_float;
-    const float* mean = means.data() + first_float;
-    GridBase::Ptr grid;
-    if (from.channels[channel].components == 3) {
-        const auto vector =
-            build<Vec3SGrid>(source, Vec3s(mean[0], mean[1], mean[2]), [&](std::uint64_t row) {
-                return Vec3s(stored(plane[0][row]), stored(plane[1][row]), stored(plane[2][row]));
-            });
-        vector->setVectorType(openvdb::VEC_INVARIANT);
-        grid = vector;
-    } else {
-        grid = build<FloatGrid>(source, mean[0],
-                                [&](std::uint64_t row) { return stored(plane[0][row]); });
-    }
-    grid->setGridClass(openvdb::GRID_UNKNOWN);
-    describe(from, level, half, *grid);
-    put(*grid, key::channel, from.channels[channel].name);
-    if (level == 0 && channel < from.errors.size()) describe_errors(from.errors[channel], *grid);
-    return grid;
+Plan channel_plan(const TextureGrid& from, int level, std::size_t channel, std::size_t first_float,
+                  const std::vector<float>& means, bool half) {
+    const auto* plane = from.levels[std::size_t(level)].planes.data() + first_float;
+    Plan plan;
+    plan.from = &from;
+    plan.level = level;
+    plan.components = from.channels[channel].components;
+    plan.values = [plane, half, n = std::size_t(plan.components)](std::uint64_t row,
+                                                                  std::size_t count, float* out) {
+        for (std::size_t c = 0; c < n; ++c) {
+            const float* from_row = plane[c].data() + row;
+            for (std::size_t i = 0; i < count; ++i) {
+                out[n * i + c] = half ? nearest_half(from_row[i]) : from_row[i];
+            }
+        }
+    };
+    plan.shell = [=, &from,
+                  mean = std::vector<float>(means.begin() + std::ptrdiff_t(first_float),
+                                            means.end())](const auto& blocks, auto&) {
+        GridBase::Ptr grid;
+        if (from.channels[channel].components == 3) {
+            grid = color_shell(blocks, Vec3s(mean[0], mean[1], mean[2]));
+            grid->setVectorType(openvdb::VEC_INVARIANT);
+        } else {
+            grid = number_shell(blocks, mean[0]);
+        }
+        grid->setGridClass(openvdb::GRID_UNKNOWN);
+        describe(from, level, half, *grid);
+        put(*grid, key::channel, from.channels[channel].name);
+        const bool measured = level == 0 && channel < from.errors.size();
+        if (measured) describe_errors(from.errors[channel], *grid);
+        return grid;
+    };
+    return plan;
 }
 
 /// Half the thickness of the shell that stands for an open surface, voxels. At a surface point the
@@ -140,24 +139,45 @@ constexpr double shell = 0.75;
 
 /// The level set. An open surface has no inside, and signs that end at the band's edge look like a
 /// second, ragged surface from behind: it becomes a thin closed shell instead.
-GridBase::Ptr build_surface(const TextureGrid& from, bool half) {
+Plan surface_plan(const TextureGrid& from, bool half) {
     const auto outside = float(3.0 * from.voxel_size), thin = float(shell * from.voxel_size);
-    auto grid = build<FloatGrid>(from.levels[0], outside, [&](std::uint64_t row) {
+    const auto value = [&from, half, thin](std::uint64_t row) {
         const float d = from.distance[row];
-        const float value = from.closed ? d : std::abs(d) - thin;
-        return half ? nearest_half(value) : value;
-    });
-    if (from.closed) openvdb::tools::signedFloodFill(grid->tree());
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    describe(from, 0, half, *grid);
-    return grid;
+        const float v = from.closed ? d : std::abs(d) - thin;
+        return half ? nearest_half(v) : v;
+    };
+    Plan plan;
+    plan.from = &from;
+    plan.level = 0;
+    plan.components = 1;
+    plan.values = [value](std::uint64_t row, std::size_t count, float* out) {
+        for (std::size_t i = 0; i < count; ++i) out[i] = value(row + i);
+    };
+    plan.shell = [&from, half, outside, value](const auto& blocks, auto& inside) {
+        const openvdb::FloatGrid::Ptr grid = number_shell(blocks, outside);
+        if (from.closed) inside = fill_inside(blocks, value, *grid);
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        describe(from, 0, half, *grid);
+        return grid;
+    };
+    return plan;
 }
 
-GridBase::Ptr build_density(const TextureGrid& from, bool half) {
-    auto grid = build<FloatGrid>(from.levels[0], 0.0f, [](std::uint64_t) { return 1.0f; });
-    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    describe(from, 0, half, *grid);
-    return grid;
+Plan density_plan(const TextureGrid& from, bool half) {
+    Plan plan;
+    plan.from = &from;
+    plan.level = 0;
+    plan.components = 1;
+    plan.values = [](std::uint64_t, std::size_t count, float* out) {
+        std::fill_n(out, count, 1.0f);
+    };
+    plan.shell = [&from, half](const auto& blocks, auto&) {
+        const openvdb::FloatGrid::Ptr grid = number_shell(blocks, 0.0f);
+        grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+        describe(from, 0, half, *grid);
+        return grid;
+    };
+    return plan;
 }
 
 void check_writable(const std::string& path, const TextureGrid& grid) {
@@ -176,29 +196,28 @@ void check_writable(const std::string& path, const TextureGrid& grid) {
     check_finite(grid, title);
 }
 
-/// Channels level by level, then surface and density, of every object.
+/// Channels level by level, then surface and density, of every TextureGrid.
 std::vector<Plan> plans(const std::string& path, const std::vector<TextureGrid>& grids, bool half) {
+    std::set<std::string> objects;
+    for (const TextureGrid& grid : grids) objects.insert(grid.object);
     std::vector<Plan> result;
     for (const TextureGrid& grid : grids) {
-        const std::string object = grids.size() == 1 ? "" : grid.object;
         check_writable(path, grid);
+        const auto add = [&](const std::string& what, Plan plan) {
+            plan.name = grid_name(what, object_suffix(objects, grid.object), plan.level);
+            result.push_back(std::move(plan));
+        };
         const std::vector<float> means = plane_means(grid);
         std::size_t first = 0;
         for (std::size_t c = 0; c < grid.channels.size(); ++c) {
             for (int n = 0; n < int(grid.levels.size()); ++n) {
-                result.push_back({grid_name(grid.channels[c].name, object, n),
-                                  [&grid, n, c, first, means, half] {
-                                      return build_channel(grid, n, c, first, means, half);
-                                  }});
+                add(grid.channels[c].name, channel_plan(grid, n, c, first, means, half));
             }
             first += std::size_t(grid.channels[c].components);
         }
-        if (!grid.distance.empty()) {
-            result.push_back({grid_name("surface", object, 0),
-                              [&grid, half] { return build_surface(grid, half); }});
-        }
-        result.push_back(
-            {grid_name("density", object, 0), [&grid, half] { return build_density(grid, half); }});
+        if (grid.distance.empty()) continue;
+        add("surface", surface_plan(grid, half));
+        add("density", density_plan(grid, half));
     }
     std::set<std::string> names;
     for (const Plan& plan : result) {
@@ -207,41 +226,6 @@ std::vector<Plan> plans(const std::string& path, const std::vector<TextureGrid>&
             fmt::format("{}: two grids would be called \"{}\"; rename an object", path, plan.name));
     }
     return result;
-}
-
-std::vector<GridBase::Ptr> build_all(const std::vector<Plan>& plan) {
-    std::vector<GridBase::Ptr> grids(plan.size());
-    tbb::parallel_for(std::size_t{0}, plan.size(), [&](std::size_t i) {
-        grids[i] = plan[i].build();
-        grids[i]->setName(plan[i].name);
-    });
-    return grids;
-}
-
-template <class GridT>
-std::uint64_t digest_values(const GridT& grid) {
-    XXH3_state_t state;
-    XXH3_64bits_reset(&state);
-    std::vector<typename GridT::ValueType> values;
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
-        const Coord origin = leaf->origin();
-        values.clear();
-        for (auto it = leaf->cbeginValueOn(); it; ++it) values.push_back(*it);
-        XXH3_64bits_update(&state, origin.data(), 3 * sizeof(openvdb::Int32));
-        for (openvdb::Index w = 0; w < 8; ++w) {
-            const auto word = leaf->getValueMask().template getWord<std::uint64_t>(w);
-            XXH3_64bits_update(&state, &word, sizeof word);
-        }
-        XXH3_64bits_update(&state, values.data(), values.size() * sizeof values[0]);
-    }
-    return XXH3_64bits_digest(&state);
-}
-
-/// Digest of a grid's active voxels: coordinates and values.
-std::uint64_t digest(const GridBase& grid) {
-    if (const auto* colors = dynamic_cast<const Vec3SGrid*>(&grid)) return digest_values(*colors);
-    if (const auto* numbers = dynamic_cast<const FloatGrid*>(&grid)) return digest_values(*numbers);
-    return 0;
 }
 
 std::uint32_t compression_flags(Compression compression) {
@@ -257,38 +241,140 @@ std::uint32_t compression_flags(Compression compression) {
     return COMPRESS_NONE;
 }
 
-/// The layout of the file just written. OpenVDB does not notice a full disk: write() and close()
-/// return, and the file is short.
-VdbLayout written_layout(const std::string& path, const std::string& temporary, std::size_t grids) {
-    VdbLayout layout;
-    try {
-        layout = vdb_layout(temporary);
-        const bool whole = layout.needed <= layout.size && layout.grids.size() == grids;
-        if (whole && layout.digest_at != 0) return layout;
-    } catch (
-        const Error&) {  // it is about the temporary file, whose name means nothing to the user
+/// Makes OpenVDB's own header.
+struct Header : openvdb::io::Archive {
+    static void write(std::ostream& to) { Header().writeHeader(to, true); }
+};
+
+/// The bytes of a leaf: voxels and values.
+/// @param inside  inactive voxels whose value is -background
+void append_leaf(const Plan& plan, const Block& block, const BlockMask& inside,
+                 ValueEncoder& encoder, std::string& out) {
+    const auto append = [&out](const auto& what) {
+        out.append(reinterpret_cast<const char*>(&what), sizeof what);
+    };
+    append(block.active.words);
+    BlockMask outside;
+    for (std::size_t w = 0; w < 8; ++w) {
+        outside.words[w] = ~(block.active.words[w] | inside.words[w]);
     }
-    std::error_code ignored;
-    const std::uintmax_t size = std::filesystem::file_size(temporary, ignored);
-    throw Error(fmt::format("{}: the disk is full or the file was cut short: only {} bytes arrived",
-                            path, ignored ? 0 : size),
-                ExitStatus::failed);
+    if (!inside.any()) {
+        append(std::int8_t{openvdb::io::NO_MASK_OR_INACTIVE_VALS});
+    } else if (!outside.any()) {
+        append(std::int8_t{openvdb::io::NO_MASK_AND_MINUS_BG});
+    } else {
+        append(std::int8_t{openvdb::io::MASK_AND_NO_INACTIVE_VALS});
+        append(outside.words);
+    }
+    std::array<float, 512 * 3> values;
+    const auto count = std::size_t(block.active.count());
+    plan.values(block.first, count, values.data());
+    encoder.append(values.data(), count, out);
 }
 
-/// Reads the file back and compares it with the digests of what was to be written.
-void check_content(const std::string& path, const std::string& temporary,
-                   const std::vector<Plan>& plan, const std::vector<std::uint64_t>& digests) {
-    openvdb::io::File file(temporary);
-    file.open(false);
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-        const bool same =
-            file.hasGrid(plan[i].name) && digest(*file.readGrid(plan[i].name)) == digests[i];
-        if (same) continue;
-        throw Error(
-            fmt::format("{}: grid \"{}\" read back is not what was written: is the disk faulty?",
-                        path, plan[i].name),
-            ExitStatus::failed);
+/// Writes the leaves of a grid: many at a time, but in order, and never many in memory.
+void append_leaves(const Plan& plan, const std::vector<const Block*>& blocks,
+                   const std::vector<BlockMask>& inside, const ValueFormat& format,
+                   CheckedOutput& file) {
+    constexpr std::size_t at_once = 512;  // a megabyte of colours
+    std::size_t next = 0;
+    const auto some = [&](tbb::flow_control& control) {
+        const std::size_t first = next;
+        if (first >= blocks.size()) control.stop();
+        next += at_once;
+        return first;
+    };
+    const auto packed = [&](std::size_t first) {
+        std::string bytes;
+        ValueEncoder encoder(format);
+        for (std::size_t b = first; b < std::min(first + at_once, blocks.size()); ++b) {
+            append_leaf(plan, *blocks[b], inside.empty() ? BlockMask{} : inside[b], encoder, bytes);
+        }
+        return bytes;
+    };
+    const auto write = [&](const std::string& bytes) { file.append(bytes); };
+    using tbb::filter_mode;
+    tbb::parallel_pipeline(
+        4 * std::size_t(tbb::this_task_arena::max_concurrency()),
+        tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, some) &
+            tbb::make_filter<std::size_t, std::string>(filter_mode::parallel, packed) &
+            tbb::make_filter<std::string, void>(filter_mode::serial_in_order, write));
+}
+
+/// What OpenVDB adds to a grid's metadata when it writes one.
+template <class GridT>
+void add_statistics(std::uint32_t compression, GridT& grid) {
+    grid.addStatsMetadata();
+    using Leaf = typename GridT::TreeType::LeafNodeType;
+    const openvdb::Index64 buffers =
+        openvdb::Index64(grid.tree().leafCount()) * Leaf::SIZE * sizeof(typename Leaf::ValueType);
+    put(grid, GridBase::META_FILE_MEM_BYTES, openvdb::Int64(grid.memUsage() + buffers));
+    put(grid, GridBase::META_FILE_COMPRESSION, openvdb::io::compressionToString(compression));
+}
+
+/// Appends a grid as OpenVDB's Archive::writeGrid() does, except that its values are not in it, and
+/// that zip serves fog volumes too: ours is constant.
+void append_grid(const Plan& plan, std::uint32_t compression, CheckedOutput& file) {
+    const std::vector<const Block*> blocks =
+        in_tree_order(plan.from->levels[std::size_t(plan.level)]);
+    std::vector<BlockMask> inside;
+    const GridBase::Ptr grid = plan.shell(blocks, inside);
+    // Neither does OpenVDB zip distances: they do not shrink.
+    if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
+        compression &= ~std::uint32_t{openvdb::io::COMPRESS_ZIP};
     }
+    grid->setName(plan.name);
+    if (const auto colors = openvdb::gridPtrCast<Vec3SGrid>(grid)) {
+        add_statistics(compression, *colors);
+    } else {
+        add_statistics(compression, *openvdb::gridPtrCast<FloatGrid>(grid));
+    }
+    openvdb::io::GridDescriptor descriptor(plan.name, grid->type(), grid->saveFloatAsHalf());
+    const auto described = [&descriptor] {
+        std::ostringstream to;
+        descriptor.writeHeader(to);
+        descriptor.writeStreamPos(to);
+        return to.str();
+    };
+    const std::uint64_t start = file.size();
+    file.append(described());
+    descriptor.setGridPos(std::int64_t(file.size()));
+    {
+        std::ostringstream to;
+        openvdb::io::setDataCompression(to, compression);
+        to.write(reinterpret_cast<const char*>(&compression), sizeof compression);
+        grid->writeMeta(to);
+        grid->writeTransform(to);
+        grid->writeTopology(to);
+        file.append(to.view());
+    }
+    descriptor.setBlockPos(std::int64_t(file.size()));
+    append_leaves(plan, blocks, inside, {compression, plan.components, grid->saveFloatAsHalf()},
+                  file);
+    descriptor.setEndPos(std::int64_t(file.size()));
+    file.replace(start, described());
+}
+
+/// Compares the file with what was written, and puts its digest in.
+void check_and_seal(const std::string& path, const std::string& temporary, std::size_t grids,
+                    const CheckedOutput& output) {
+    VdbLayout layout;
+    std::string digest;
+    {
+        const MappedFile file(temporary);
+        output.check(file);
+        layout = vdb_layout(path, file);
+        const bool whole = layout.needed == layout.size && layout.grids.size() == grids;
+        if (!whole || layout.digest_at == 0) {
+            throw std::logic_error("write_vdb: the list of grids is not what was written");
+        }
+        digest = vdb_digest(file, layout);
+    }
+    std::fstream file(temporary, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(std::streamoff(layout.digest_at));
+    file.write(digest.data(), std::streamsize(digest.size()));
+    file.close();
+    if (!file) throw Error(fmt::format("{}: it cannot be written", path), ExitStatus::failed);
 }
 
 }  // namespace
@@ -299,29 +385,26 @@ std::uint64_t write_vdb(const std::string& path, const std::vector<TextureGrid>&
     const std::vector<Plan> plan = plans(path, grids, options.half);
     if (plan.empty()) throw Error(fmt::format("{}: there is nothing to write", path));
     PendingFile pending(path);
-    VdbLayout layout;
+    CheckedOutput file(pending.path(), path);
     try {
-        std::vector<std::uint64_t> digests(plan.size());
-        {
-            const std::vector<GridBase::Ptr> built = build_all(plan);
-            tbb::parallel_for(std::size_t{0}, built.size(),
-                              [&](std::size_t i) { digests[i] = digest(*built[i]); });
-            openvdb::MetaMap about;
-            about.insertMeta(digest_key, openvdb::StringMetadata(digest_placeholder));
-            openvdb::io::File file(pending.path());
-            file.setCompression(compression_flags(options.compression));
-            file.write(built, about);
-            file.close();
-        }
-        layout = written_layout(path, pending.path(), plan.size());
-        check_content(path, pending.path(), plan, digests);
+        std::ostringstream start;
+        Header::write(start);
+        openvdb::MetaMap about;
+        about.insertMeta(digest_key, openvdb::StringMetadata(digest_placeholder));
+        about.writeMeta(start);
+        const auto count = std::int32_t(plan.size());
+        start.write(reinterpret_cast<const char*>(&count), sizeof count);
+        file.append(start.view());
+        const std::uint32_t compression = compression_flags(options.compression);
+        for (const Plan& grid : plan) append_grid(grid, compression, file);
     } catch (const openvdb::Exception& e) {
         throw Error(fmt::format("{}: it cannot be written: {}", path, reason(e)),
                     ExitStatus::failed);
     }
-    seal_vdb(pending.path(), layout);
+    file.close();
+    check_and_seal(path, pending.path(), plan.size(), file);
     pending.commit();
-    return layout.size;
+    return file.size();
 }
 
 }  // namespace estara

@@ -128,6 +128,7 @@ void expect_same(const TextureGrid& a, const TextureGrid& b) {
     EXPECT_EQ(a.params, b.params);
     EXPECT_EQ(a.shader_digest, b.shader_digest);
     EXPECT_EQ(a.mesh_digest, b.mesh_digest);
+    EXPECT_EQ(a.lights_digest, b.lights_digest);
     EXPECT_EQ(a.tool_version, b.tool_version);
     ASSERT_EQ(a.channels.size(), b.channels.size());
     for (std::size_t c = 0; c < a.channels.size(); ++c) {

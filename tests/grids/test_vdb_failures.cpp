@@ -89,6 +89,52 @@ TEST(ReadVdb, NoticesAnyChangedByte) {
               path + ": damaged: its bytes are not those that were written; bake it again");
 }
 
+TEST(ReadVdb, SurvivesAnyChangedByteOfAFileWithoutDigest) {
+    const TemporaryFolder folder;
+    std::string bytes = small_file(folder);
+    const std::string path = folder.file("a.vdb");
+    replace_all(bytes, "estara_digest", "unknown_thing");
+    write_bytes(path, bytes);
+    read_vdb(path);
+    int refused = 0;
+    for (std::size_t at = 0; at < bytes.size(); at += 211) {
+        for (const char change : {char(0x01), char(0x80), char(0xff)}) {
+            std::string changed = bytes;
+            changed[at] = char(changed[at] ^ change);
+            write_bytes(path, changed);
+            try {
+                read_vdb(path);
+            } catch (const Error&) {
+                ++refused;
+            }
+        }
+    }
+    EXPECT_GT(refused, 10);
+}
+
+TEST(ReadVdb, RefusesVoxelsThatAreNotThere) {
+    const TemporaryFolder folder;
+    TextureGrid grid = complete_grid("", 0.2);
+    for (float& value : grid.levels[0].planes[3]) value = 0.5f;  // which zip packs
+    write_vdb(folder.file("whole.vdb"), {grid}, {});
+    std::string bytes = read_bytes(folder.file("whole.vdb"));
+    const std::string path = folder.file("a.vdb");
+    replace_all(bytes, "estara_digest", "unknown_thing");
+    const std::string packed = "\x78\x01";  // how a zlib stream begins
+    const std::size_t at = bytes.find(packed, bytes.find("specular", bytes.find("Tree_float")));
+    ASSERT_NE(at, std::string::npos);
+    const auto with = [&](std::size_t where, const std::string& what) {
+        write_bytes(path, std::string(bytes).replace(where, what.size(), what));
+        return read_error(path);
+    };
+    const std::string damaged = path + ": grid \"specular\" is damaged; bake it again";
+    EXPECT_EQ(with(at, "\x79"), damaged);                               // no zlib stream
+    EXPECT_EQ(with(at - 8, std::string(8, '\x7f')), damaged);           // a size beyond the file
+    EXPECT_EQ(with(at - 8, std::string(8, '\x80')), damaged);           // and of plain values
+    EXPECT_EQ(with(at - 8, std::string(8, '\0')), damaged);             // nothing
+    EXPECT_EQ(with(at - 8 - 1 - 64, std::string(8, '\x55')), damaged);  // other voxels
+}
+
 TEST(ReadVdb, SaysThatAFormatIsUnknown) {
     const TemporaryFolder folder;
     std::string bytes = small_file(folder);

@@ -71,6 +71,59 @@ TEST(VdbFile, NamesGridsByChannelObjectAndLevel) {
     EXPECT_EQ(bytes.find(stored("surface_level_1")), std::string::npos);
 }
 
+/// Light on the sphere: other voxels, levels and channels than complete_grid() has.
+TextureGrid light_grid(const std::string& object) {
+    TextureGrid grid = sphere_grid({}, 0.11, {{"irradiance", 3}, {"irradiance_mask", 1}});
+    grid.object = object;
+    grid.shader = "irradiance";
+    grid.lights_digest = "00112233445566aa";
+    grid.tool_version = "0.1.0";
+    grid.distance.clear();
+    add_levels(grid);
+    return grid;
+}
+
+TEST(VdbFile, HoldsSeveralShadersOfAnObjectUnderPlainNames) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.vdb");
+    const std::vector<TextureGrid> grids = {complete_grid("vase"), light_grid("vase")};
+    write_vdb(path, grids, {});
+    const std::vector<TextureGrid> read = read_vdb(path);
+    ASSERT_EQ(read.size(), 2u);
+    expect_same(read[0], grids[1]);  // "irradiance" before "wood"
+    expect_same(read[1], grids[0]);
+    const std::string bytes = read_bytes(path);
+    for (const char* name : {"color", "irradiance", "irradiance_mask_level_1", "density"}) {
+        EXPECT_NE(bytes.find(stored(name)), std::string::npos);
+    }
+    EXPECT_EQ(bytes.find("_vase"), std::string::npos);
+    EXPECT_EQ(VdbSampler(path, "").levels(), int(grids[0].levels.size()));
+    EXPECT_EQ(VdbSampler(path, "vase", "irradiance").levels(), int(grids[1].levels.size()));
+    EXPECT_EQ(error_of([&] { VdbSampler s(path, "vase", "stone"); }),
+              path + ": object \"vase\" has no colours of shader \"stone\"");
+}
+
+TEST(VdbFile, HoldsSeveralShadersOfSeveralObjects) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("a.vdb");
+    const std::vector<TextureGrid> grids = {light_grid("cup"), complete_grid("cup"),
+                                            complete_grid("vase"), light_grid("vase")};
+    write_vdb(path, grids, {});
+    const std::vector<TextureGrid> read = read_vdb(path);
+    ASSERT_EQ(read.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        expect_same(read[i], grids[i == 2 ? 3 : i == 3 ? 2 : i]);
+    }
+}
+
+TEST(VdbFile, HasSurfaceAndDensityOnlyWithDistances) {
+    const TemporaryFolder folder;
+    write_vdb(folder.file("a.vdb"), {light_grid("")}, {});
+    const std::string bytes = read_bytes(folder.file("a.vdb"));
+    EXPECT_EQ(bytes.find(stored("surface")), std::string::npos);
+    EXPECT_EQ(bytes.find(stored("density")), std::string::npos);
+}
+
 TEST(VdbFile, CanBeWrittenAgainFromWhatWasRead) {
     const TemporaryFolder folder;
     write_vdb(folder.file("a.vdb"), {complete_grid()}, {});

@@ -82,7 +82,8 @@ struct ErrorFigures {
     std::uint64_t samples = 0;  ///< surface points
 };
 
-/// An object's baked shader: a pyramid of levels in the object's space.
+/// An object's baked shader: a pyramid of levels in the object's space. An object may have several,
+/// of different shaders, with voxels and levels of their own.
 struct TextureGrid {
     std::string object;       ///< the scene's name for it; grids carry it in a file of several
     double voxel_size = 1.0;  ///< edge of a voxel of level 0, object space
@@ -99,6 +100,7 @@ struct TextureGrid {
     std::vector<std::pair<std::string, std::vector<float>>>
         params;  ///< every parameter, 1 or 3 floats
     std::string shader_digest, mesh_digest;
+    std::string lights_digest;         ///< of the lights that light was computed from; else empty
     std::vector<ErrorFigures> errors;  ///< by channel; may be empty
     std::string tool_version;
 
@@ -129,16 +131,18 @@ struct VdbWriteOptions {
 };
 
 /// Writes grids of one or several objects as a .vdb file that any OpenVDB program can read
-/// (grids/README.md is the format). A name that a reader would see twice is an Error.
+/// (grids/README.md is the format). A name that a reader would see twice is an Error. Takes at
+/// most some 8 bytes of memory a voxel, and 50 MB, beside the grids.
 ///
 /// Written to a temporary file in the same folder, closed, size compared, reopened and compared
-/// with what was meant to be written (grid names, voxels, values), fsync'd and renamed: under
+/// with what was meant to be written (grid list, digest of every piece), fsync'd and renamed: under
 /// `path` there is a whole file or what was there before. Error (failed) if the disk is full.
 /// @return size of the file in bytes
 std::uint64_t write_vdb(const std::string& path, const std::vector<TextureGrid>& grids,
                         const VdbWriteOptions& options);
 
-/// Reads what write_vdb() wrote. `distance` and `cells` are not read.
+/// Reads what write_vdb() wrote, by object and shader in the order of their names. `distance` and
+/// `cells` are not read.
 /// Error: not a .vdb, truncated, not made by estara-bake, missing level or channel.
 std::vector<TextureGrid> read_vdb(const std::string& path);
 

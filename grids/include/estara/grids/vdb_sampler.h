@@ -11,8 +11,9 @@ namespace estara {
 
 class VdbSampler {
 public:
-    /// Opens the grids of one object ("" in a file of one). Error as read_vdb().
-    VdbSampler(const std::string& path, const std::string& object);
+    /// Opens the grids of one object ("" in a file of one) and one of its shaders, or the first
+    /// that is not its irradiance. Error as read_vdb().
+    VdbSampler(const std::string& path, const std::string& object, const std::string& shader = "");
     ~VdbSampler();
     VdbSampler(const VdbSampler&) = delete;
     VdbSampler& operator=(const VdbSampler&) = delete;
