@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include "estara/shaders/kernel.h"
 
 namespace estara {
 
@@ -87,8 +88,7 @@ struct RawBrick {
 /// on the surface reads them, and one beside it sees nothing odd.
 /// @param raw   part floats, each with an active voxel
 /// @param part  BrickPart::words(floats) words
-[[gnu::always_inline]] inline void encode_brick(const RawBrick* raw, int floats,
-                                                std::uint32_t* part) noexcept {
+ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* part) noexcept {
     const std::array<CodeField, 4> fields = code_fields(floats);
     alignas(32) std::array<std::int32_t, RawBrick::size> words{};
     for (int c = 0; c < floats; ++c) {
@@ -139,10 +139,9 @@ struct RawBrick {
 /// @param cell  place of the cell's first voxel in the brick
 /// @param xy    weights of the voxels (0, 0), (0, 1), (1, 0), (1, 1) along x and y
 /// @param z     weights of the voxels 0, 1 along z
-[[gnu::always_inline]] inline Floats4 interpolate(const BrickPart& layout,
-                                                  const std::uint32_t* part, std::size_t cell,
-                                                  const std::array<float, 4>& xy,
-                                                  const std::array<float, 2>& z) noexcept {
+ESTARA_KERNEL Floats4 interpolate(const BrickPart& layout, const std::uint32_t* part,
+                                  std::size_t cell, const std::array<float, 4>& xy,
+                                  const std::array<float, 2>& z) noexcept {
     const std::uint32_t* const voxel = part + layout.header() + cell;
     Ints8 masks;
     std::memcpy(&masks, layout.masks.data(), sizeof masks);

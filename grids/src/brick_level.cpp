@@ -8,8 +8,9 @@
 #include <new>
 #include <utility>
 
-#include "compiled_for.h"
 #include "estara/grids/bricks.h"
+#include "estara/shaders/kernel.h"
+#include "estara/shaders/wide.h"
 
 namespace estara {
 namespace {
@@ -71,8 +72,7 @@ struct RawBlock {
     std::array<std::array<float, padded>, BrickPyramid::max_floats> value;
 };
 
-[[gnu::always_inline]] inline void gather(const Near& near, const GridLevel& level,
-                                          RawBlock& raw) noexcept {
+ESTARA_KERNEL void gather(const Near& near, const GridLevel& level, RawBlock& raw) noexcept {
     const std::size_t floats = level.planes.size();
     std::array<const float*, BrickPyramid::max_floats> planes;
     for (std::size_t c = 0; c < floats; ++c) {
@@ -102,8 +102,8 @@ struct RawBlock {
 }
 
 /// The part of a block's values that a brick holds.
-[[gnu::always_inline]] inline void cut(const std::array<float, RawBlock::padded>& block,
-                                       std::uint32_t octant, RawBrick& brick) noexcept {
+ESTARA_KERNEL void cut(const std::array<float, RawBlock::padded>& block, std::uint32_t octant,
+                       RawBrick& brick) noexcept {
     const std::size_t corner =
         4 *
         (((octant >> 2) * RawBlock::side + ((octant >> 1) & 1)) * RawBlock::side + (octant & 1));
@@ -130,8 +130,8 @@ struct Filling {
 };
 
 /// Makes the bricks of one bottom table, from words on.
-[[gnu::always_inline]] inline void fill_table(const Filling& job, std::size_t table,
-                                              std::uint32_t* words) noexcept {
+ESTARA_KERNEL void fill_table(const Filling& job, std::size_t table,
+                              std::uint32_t* words) noexcept {
     job.index.for_each_block(table, [&](std::uint32_t b) {
         const std::uint32_t mask = job.masks[b];
         if (mask == 0) return;
@@ -149,10 +149,6 @@ struct Filling {
             words += job.brick_words;
         }
     });
-}
-
-void fill_table_kernel(const Filling& job, std::size_t table, std::uint32_t* words) noexcept {
-    fill_table(job, table, words);
 }
 
 /// Memory that is not touched before it is filled, in large pages if the system gives them: a
@@ -202,10 +198,10 @@ BrickLevel::BrickLevel(const GridLevel& level, std::span<const BrickPart> parts,
     for (std::uint32_t& f : first) f = std::exchange(bricks, bricks + f);
 
     words.reset(allocate(std::size_t(bricks) * brick_words));
-    const auto fill = compiled_for<fill_table_kernel>(limit);
     const Filling job{level, index, parts, masks, brick_words};
     tbb::parallel_for(std::size_t{1}, index.tables(), [&](std::size_t table) {
-        fill(job, table, words.get() + std::size_t(first[table]) * brick_words);
+        std::uint32_t* const to = words.get() + std::size_t(first[table]) * brick_words;
+        wide([&job, table, to]() ESTARA_LOOP { fill_table(job, table, to); }, limit);
     });
     index.set_bricks(masks, first);
 }

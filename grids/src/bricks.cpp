@@ -9,8 +9,9 @@
 
 #include "blocks.h"
 #include "brick_level.h"
-#include "compiled_for.h"
 #include "estara/scenes/error.h"
+#include "estara/shaders/math.h"
+#include "estara/shaders/wide.h"
 
 namespace estara {
 namespace {
@@ -22,22 +23,9 @@ std::string title(const TextureGrid& grid) {
     return grid.object.empty() ? "texture grid" : fmt::format("object \"{}\"", grid.object);
 }
 
-/// log2(x) of a positive float that is not denormal, within 2e-7 + one rounding; exact for powers
-/// of two. The series of 2 atanh((m - 1) / (m + 1)) = ln m, m in [sqrt(1/2), sqrt(2)], by
-/// operations that a loop can do side by side.
-[[gnu::always_inline]] inline float log2_of(float x) noexcept {
-    const auto bits = std::bit_cast<std::int32_t>(x);
-    constexpr std::int32_t root_half = 0x3f3504f3;  // sqrt(1/2)
-    const std::int32_t exponent = (bits - root_half) >> 23;
-    const float m = std::bit_cast<float>(bits - (exponent << 23));
-    const float s = (m - 1.0f) / (m + 1.0f), q = s * s;
-    constexpr float c = 2.88539008f;  // 2 / ln 2
-    return float(exponent) + s * (c + q * (c / 3.0f + q * (c / 5.0f + q * (c / 7.0f))));
-}
-
-[[gnu::always_inline]] inline float fractional_level(float footprint, float voxel_size, float last,
-                                                     float bias) noexcept {
-    const float level = log2_of(footprint / voxel_size) + bias;
+ESTARA_KERNEL float fractional_level(float footprint, float voxel_size, float last,
+                                     float bias) noexcept {
+    const float level = log2_kernel(footprint / voxel_size) + bias;
     const float within = level > 0.0f ? (level < last ? level : last) : 0.0f;
     return footprint > 0.0f ? within : 0.0f;
 }
@@ -60,8 +48,7 @@ BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::v
     : m_floats(grid.floats()),
       m_voxel_size(grid.voxel_size),
       m_origin(grid.origin),
-      m_lookup(compiled_for<lookup_batch<in_flight>>(limit)),
-      m_lookup_one(compiled_for<lookup_batch<1>>(limit)) {
+      m_limit(limit) {
     if (m_floats < 1 || m_floats > max_floats) {
         throw Error(fmt::format("{}: {} floats a voxel; a lookup takes 1 to {}", title(grid),
                                 m_floats, max_floats));
@@ -133,10 +120,9 @@ struct Taps {
 /// @param position  relative to index (0, 0, 0), in voxels of level 0
 /// @param miss      stands for the brick that is not there
 template <std::size_t n>
-[[gnu::always_inline]] inline void locate(const BrickLevel& level, double scale,
-                                          const ByAxis<std::array<double, n>>& position,
-                                          std::size_t begin, std::size_t end,
-                                          const std::uint32_t* miss, Taps<n>& taps) noexcept {
+ESTARA_KERNEL void locate(const BrickLevel& level, double scale,
+                          const ByAxis<std::array<double, n>>& position, std::size_t begin,
+                          std::size_t end, const std::uint32_t* miss, Taps<n>& taps) noexcept {
     ByAxis<std::array<std::int32_t, n>> voxel;
     ByAxis<std::array<float, n>> far;  // weights of the farther voxels
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -173,19 +159,18 @@ template <std::size_t n>
 }
 
 template <std::size_t n>
-[[gnu::always_inline]] inline Floats4 interpolate(const BrickPart& part, const Taps<n>& taps,
-                                                  std::size_t i) noexcept {
+ESTARA_KERNEL Floats4 interpolate(const BrickPart& part, const Taps<n>& taps,
+                                  std::size_t i) noexcept {
     return interpolate(part, taps.brick[i] + part.offset, taps.cell[i], taps.xy[i], taps.z[i]);
 }
 
 /// All points: those that follow each other on the same level together.
 template <std::size_t n>
-[[gnu::always_inline]] inline void locate(const std::vector<BrickLevel>& levels,
-                                          const std::array<std::int32_t, n>& level,
-                                          const ByAxis<std::array<double, n>>& position,
-                                          std::size_t count, const std::uint32_t* miss,
-                                          std::span<const BrickPart> parts,
-                                          Taps<n>& taps) noexcept {
+ESTARA_KERNEL void locate(const std::vector<BrickLevel>& levels,
+                          const std::array<std::int32_t, n>& level,
+                          const ByAxis<std::array<double, n>>& position, std::size_t count,
+                          const std::uint32_t* miss, std::span<const BrickPart> parts,
+                          Taps<n>& taps) noexcept {
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
         while (end < count && level[end] == level[begin]) ++end;
         const double scale = std::bit_cast<float>((127 - level[begin]) << 23);  // 2^-level
@@ -207,7 +192,8 @@ template <std::size_t n>
 }  // namespace
 
 template <std::size_t n>
-void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch) noexcept {
+ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
+                                              const Batch& batch) noexcept {
     const double per_voxel = 1.0 / pyramid.m_voxel_size;
     const glm::dvec3 origin = pyramid.m_origin;
     const auto voxel_size = float(pyramid.m_voxel_size);
@@ -268,21 +254,26 @@ void BrickPyramid::lookup_batch(const BrickPyramid& pyramid, const Batch& batch)
     }
 }
 
+template <std::size_t n>
+void BrickPyramid::run(const Batch& batch) const noexcept {
+    wide([this, &batch]() ESTARA_LOOP { lookup_batch<n>(*this, batch); }, m_limit);
+}
+
 bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
     std::uint8_t found = 0;
-    m_lookup_one(*this, {{&P, 1}, nullptr, float(level), out, 1, &found});
+    run<1>({{&P, 1}, nullptr, float(level), out, 1, &found});
     return found != 0;
 }
 
 bool BrickPyramid::lookup(const glm::vec3& P, float footprint, float* out) const noexcept {
     std::uint8_t found = 0;
-    m_lookup_one(*this, {{&P, 1}, &footprint, 0.0f, out, 1, &found});
+    run<1>({{&P, 1}, &footprint, 0.0f, out, 1, &found});
     return found != 0;
 }
 
 void BrickPyramid::lookup(std::span<const glm::vec3> P, std::span<const float> footprints,
                           float* planes, std::size_t stride, std::uint8_t* found) const noexcept {
-    m_lookup(*this, {P, footprints.data(), 0.0f, planes, stride, found});
+    run<in_flight>({P, footprints.data(), 0.0f, planes, stride, found});
 }
 
 float BrickPyramid::level_for(float footprint) const noexcept {

@@ -37,11 +37,13 @@ bool needs_direct_width(const Scene& scene, const GridMatch& match) {
 std::vector<std::shared_ptr<const BrickPyramid>> flatten(std::vector<LoadedGrid>& grids,
                                                          const GridMatch& match) {
     std::vector<std::shared_ptr<const BrickPyramid>> pyramids(grids.size());
-    for (const int g : match.grid_of_object) {
-        if (g < 0 || pyramids[std::size_t(g)]) continue;
+    const auto make = [&](int g) {
+        if (g < 0 || pyramids[std::size_t(g)]) return;
         pyramids[std::size_t(g)] = std::make_shared<BrickPyramid>(grids[std::size_t(g)].grid);
         grids[std::size_t(g)].grid.levels.clear();  // as large again, and of no more use
-    }
+    };
+    std::for_each(match.grid_of_object.begin(), match.grid_of_object.end(), make);
+    std::for_each(match.irradiance_of_object.begin(), match.irradiance_of_object.end(), make);
     return pyramids;
 }
 
@@ -57,6 +59,7 @@ ObjectRecord record_of(const Object& object, const ObjectShading& shading) {
         record.levels = shading.pyramid->levels();
         record.grid_bytes = shading.pyramid->bytes();
     }
+    if (shading.irradiance) record.grid_bytes += shading.irradiance->bytes();
     return record;
 }
 
@@ -106,10 +109,12 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
     Wardrobe wardrobe;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         const int g = match.grid_of_object[i];
-        ObjectShading shading{scene.objects[i].shader, nullptr, positive(widths[i])};
+        ObjectShading shading{scene.objects[i].shader, nullptr, positive(widths[i]), nullptr};
         if (g >= 0) shading.filter_width = float(grids[std::size_t(g)].grid.voxel_size);
         wardrobe.direct.push_back(shading);
         if (g >= 0) shading.pyramid = pyramids[std::size_t(g)];
+        const int light = match.irradiance_of_object[i];
+        if (light >= 0) shading.irradiance = pyramids[std::size_t(light)];
         wardrobe.records.push_back(record_of(scene.objects[i], shading));
         if (shading.pyramid) wardrobe.records.back().grid_file = grids[std::size_t(g)].file;
         wardrobe.chosen.push_back(std::move(shading));

@@ -18,6 +18,7 @@ FrameStatistics& FrameStatistics::operator+=(const FrameStatistics& other) noexc
     shadow_rays += other.shadow_rays;
     samples += other.samples;
     lookups += other.lookups;
+    irradiance_lookups += other.irradiance_lookups;
     misses += other.misses;
     bad_pixels += other.bad_pixels;
     return *this;

@@ -1,5 +1,5 @@
-#include "estara/render/image_file.h"
 #include "estara/render/run.h"
+#include "estara/render/image_file.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>

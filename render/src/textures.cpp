@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "estara/grids/irradiance.h"
 #include "estara/scenes/error.h"
+#include "estara/scenes/static_light.h"
 
 namespace estara {
 namespace {
@@ -107,6 +109,7 @@ class Matcher {
 public:
     Matcher(Scene& scene, const std::vector<LoadedGrid>& grids) : m_scene(scene), m_grids(grids) {
         m_match.grid_of_object.assign(scene.objects.size(), -1);
+        m_match.irradiance_of_object.assign(scene.objects.size(), -1);
         m_match.is_stale.assign(scene.objects.size(), false);
         for (const Object& object : scene.objects) {
             m_was_bare.push_back(!object.wears_shader());
@@ -116,6 +119,10 @@ public:
 
     GridMatch match() {
         for (int g = 0; g < int(m_grids.size()); ++g) {
+            if (m_grids[std::size_t(g)].grid.shader == irradiance_shader) {
+                match_irradiance(g);
+                continue;
+            }
             const Candidates found = candidates(m_scene, m_digests, m_grids[std::size_t(g)].grid);
             if (found.objects.empty()) warn_unused(m_grids[std::size_t(g)]);
             for (const int o : found.objects) try_on(o, g, found.same_mesh);
@@ -124,6 +131,41 @@ public:
     }
 
 private:
+    void match_irradiance(int g) {
+        const LoadedGrid& loaded = m_grids[std::size_t(g)];
+        const Candidates found = candidates(m_scene, m_digests, loaded.grid);
+        if (found.objects.empty()) return warn_unused(loaded);
+        const int o = found.objects.front();
+        const std::string why = light_difference(o, loaded.grid, found.same_mesh);
+        if (why.empty()) {
+            m_match.irradiance_of_object[std::size_t(o)] = g;
+        } else {
+            m_match.warnings.push_back(
+                fmt::format("{}: baked light: {}; shadows are traced: bake it again to use it",
+                            title(loaded, m_scene.objects[std::size_t(o)]), why));
+        }
+    }
+
+    /// Why baked light is not that of the scene, or "".
+    std::string light_difference(int o, const TextureGrid& grid, bool same_mesh) const {
+        if (!same_mesh) return "its mesh is not the one that was baked";
+        if (grid.channels.size() != 2 || grid.channels[0].name != irradiance_channel ||
+            grid.channels[0].components != 3 || grid.channels[1].name != irradiance_mask_channel ||
+            grid.channels[1].components != 1) {
+            return "its channels are not irradiance and irradiance_mask";
+        }
+        const std::vector<int> instances = instances_of(m_scene, o);
+        if (instances.size() != 1) {
+            return fmt::format("it stands in the scene {} times", instances.size());
+        }
+        const std::string moving = moving_node(m_scene);
+        if (!moving.empty()) return fmt::format("\"{}\" moves", moving);
+        if (lights_digest(m_scene, instances.front()) != grid.lights_digest) {
+            return "a light or something that casts shadows has changed";
+        }
+        return "";
+    }
+
     void warn_unused(const LoadedGrid& loaded) {
         const std::string whose =
             loaded.grid.object.empty() ? "" : fmt::format(" of object \"{}\"", loaded.grid.object);

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estara/grids/irradiance.h"
 #include "estara/scenes/program.h"
 
 namespace estara {
 namespace {
-
-// A shadow ray ends a little before its light: what holds the light is often exactly there.
-constexpr float shadow_end = 0.9999f;
 
 /// A highlight below this, in the units of the picture (1 is white), is taken as it is, in shadow
 /// or not: a light's error is at most this, a quarter of an 8-bit picture's darkest step.
@@ -296,13 +294,28 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
     }
 }
 
-/// Starts E: what is baked, or nothing yet.
+/// Starts E: what is baked, or nothing yet. Baked is the front of the surface, outside of shadow
+/// edges.
 void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& group) {
-    for (int c = 0; c < 3; ++c) {
-        std::fill(m_samples.seen.E[c] + group.first, m_samples.seen.E[c] + group.last, 0.0f);
-    }
+    SeenBatch& seen = m_samples.seen;
+    for (int c = 0; c < 3; ++c) std::fill(seen.E[c] + group.first, seen.E[c] + group.last, 0.0f);
     std::fill(m_samples.baked_E + group.first, m_samples.baked_E + group.last, 0);
-    (void)frame;
+    const ObjectShading& shading = shading_of(frame, group);
+    if (!shading.irradiance) return;
+    const Stopwatch time;
+    m_irradiance.resize(4 * capacity);
+    find_footprints(frame, group);
+    shading.irradiance->lookup(m_P, m_footprints, m_irradiance.data(), capacity, m_found.data());
+    for (int j = group.first; j < group.last; ++j) {
+        const auto i = std::size_t(j - group.first);
+        const bool baked = m_found[i] && m_samples.front[j] &&
+                           m_irradiance[3 * capacity + i] <= irradiance_mask_limit;
+        if (!baked) continue;
+        m_samples.baked_E[j] = 1;
+        for (std::size_t c = 0; c < 3; ++c) seen.E[c][j] = m_irradiance[c * capacity + i];
+    }
+    statistics.irradiance_lookups += std::uint64_t(group.last - group.first);
+    statistics.evaluation_seconds += time.seconds();
 }
 
 /// Adds what one light sends to the eye from every sample.
@@ -335,18 +348,12 @@ void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
             reach->cosine[j] = faces ? cosine : 0.0f;
         }
         if (!shadow) return;
-        const bool distant = light.type == LightType::directional;
 #pragma GCC ivdep
         for (int j = group.first; j < group.last; ++j) {
             const glm::vec3 L = at(samples->seen.L, j), Ng = at(samples->Ng, j);
             const float side = glm::dot(Ng, L) < 0.0f ? -1.0f : 1.0f;
-            const glm::vec3 origin =
-                offset.from(at(samples->P, j), side * Ng, at(samples->surface.P, j));
-            put(reach->origin, j, origin);
-            put(reach->way, j,
-                {distant ? L.x : light.position.x - origin.x,
-                 distant ? L.y : light.position.y - origin.y,
-                 distant ? L.z : light.position.z - origin.z});
+            put(reach->origin, j,
+                offset.from(at(samples->P, j), side * Ng, at(samples->surface.P, j)));
         }
     });
 }
@@ -366,14 +373,12 @@ void TileRenderer::want_shadows(const FrameContext& frame) {
 }
 
 void TileRenderer::trace_shadows(const FrameContext& frame, const PosedLight& light) {
-    const bool distant = light.type == LightType::directional;
-    const float end = distant ? std::numeric_limits<float>::infinity() : shadow_end;
     m_rays.size = 0;
     for (int j = 0; j < m_count; ++j) {
         m_reach.visible[j] = 1;
         if (!m_reach.wanted[j]) continue;
         m_shadow_sample[m_rays.size] = j;
-        m_rays.push({at(m_reach.origin, j), at(m_reach.way, j), 0.0f, end});
+        m_rays.push(shadow_ray(light, at(m_reach.origin, j), at(m_samples.seen.L, j)));
     }
     const Stopwatch time;
     frame.rays.occluded(m_rays, m_blocked.data());

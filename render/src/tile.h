@@ -69,7 +69,6 @@ private:
     struct alignas(64) Reach {
         Plane cosine;           ///< <N.L>+
         Planes origin;          ///< of the shadow ray, world
-        Planes way;             ///< its direction, to the light where that is near
         Planes gloss;           ///< what view() makes of this light alone, unshadowed
         int wanted[capacity];   ///< 1: whether the light is visible could change the pixel
         int visible[capacity];  ///< 1 or 0

@@ -116,6 +116,14 @@ int find_camera(const Scene& scene, const std::string& name) {
         fmt::format("{}: no camera '{}'; the scene has: {}", scene.path, name, list(names)));
 }
 
+std::vector<int> instances_of(const Scene& scene, int object) {
+    std::vector<int> found;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        if (scene.instances[i].object == object) found.push_back(int(i));
+    }
+    return found;
+}
+
 std::vector<int> select_objects(const Scene& scene, const std::string& shader,
                                 const std::vector<std::string>& globs) {
     return globs.empty() ? objects_wearing(scene, shader) : objects_matching(scene, globs);

@@ -24,19 +24,12 @@ constexpr double max_voxels = 4e6;  ///< of an object
 /// RMSE of grids against direct evaluation; tests/README.md, "Image error".
 constexpr double allowed_rmse = 0.01;
 
-// ---- The place where shadows are switched off, once FrameSettings has a switch for them. --------
-template <class Settings>
-void switch_shadows_off(Settings& settings) {
-    if constexpr (requires { settings.shadows; }) settings.shadows = false;
-}
-// -------------------------------------------------------------------------------------------------
-
 FrameSettings frame_settings() {
     FrameSettings settings;
     settings.width = raster.width;
     settings.height = raster.height;
     settings.spp = 1;
-    switch_shadows_off(settings);
+    settings.shadows = false;
     return settings;
 }
 
@@ -65,7 +58,7 @@ std::vector<ObjectShading> baked(const Scene& scene, RayScene& rays) {
         const BoundShaderPtr& shader = scene.objects[i].shader;
         const double size = std::max(sizes[i], voxel_size_for(mesh, *shader, max_voxels));
         auto pyramid = std::make_shared<BrickPyramid>(bake_mesh(mesh, *shader, size, false));
-        shading.push_back({shader, std::move(pyramid), float(size)});
+        shading.push_back({shader, std::move(pyramid), float(size), nullptr});
     }
     return shading;
 }

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <memory>
 #include <random>
 
-#include "bake_all.h"
 #include "estara/render/camera.h"
 #include "estara/shaders/spline.h"
+#include "loops.h"
 #include "meshes.h"
 #include "rows.h"
 
@@ -123,8 +124,11 @@ public:
     void add_block() {
         const Alone<Block> alone;
         const auto with = [alone](InstructionSet set) {
-            return Bake([alone, run = detail::bake_function<Alone<Block>>(set)](
-                            const SurfaceBatch& in, float* planes) { run(alone, in, planes); });
+            return Bake([alone, set](const SurfaceBatch& in, float* planes) {
+                wide([alone, &in, planes]()
+                         ESTARA_LOOP { detail::bake_loop(alone, in, 0, in.size, planes); },
+                     set);
+            });
         };
         for (const Set& set : supported_sets()) {
             add_bake(fmt::format("{}/{}", Block::name, set.name),
@@ -167,22 +171,30 @@ private:
         const Box box = bounds(surface());
         const glm::vec3 eye = box.max + box.diagonal();
         const Camera camera({eye, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 0.3f}, 640, 360);
-        static const Light light{glm::normalize(glm::vec3(1, 2, 3)), glm::vec3(1.0f)};
-        std::vector<Seen> seen;
+        const glm::vec3 L = glm::normalize(glm::vec3(1, 2, 3));
+        const auto seen = std::make_shared<SeenBatch>();
+        std::vector<float> distance(batch_capacity);
+        camera.sights(batch.P[0], 0, batch.size, seen->V, distance.data());
         for (int i = 0; i < batch.size; ++i) {
-            const glm::vec3 P(batch.P[0][i], batch.P[1][i], batch.P[2][i]);
             const glm::vec3 N(batch.N[0][i], batch.N[1][i], batch.N[2][i]);
-            const ViewDirection V = camera.sight(P).V;
-            const glm::vec3 facing = glm::dot(N, V.vec()) < 0.0f ? -N : N;
-            const glm::vec3 E = light.Cl * std::max(0.0f, glm::dot(facing, light.L));
-            seen.push_back({facing, V, E, glm::vec3(0.2f), {&light, 1}});
+            const glm::vec3 facing = glm::dot(N, seen->V[i].vec()) < 0.0f ? -N : N;
+            for (int c = 0; c < 3; ++c) {
+                seen->N[c][i] = facing[c];
+                seen->L[c][i] = L[c];
+                seen->Cl[c][i] = 1.0f;
+                seen->E[c][i] = std::max(0.0f, glm::dot(facing, L));
+            }
         }
-        m_measured.push_back(
-            {"shader/" + name + "/view", "ns", "", "a sample, view() with one light, one thread",
-             [shader, planes, seen, Ci = std::vector<glm::vec3>(seen.size())](std::size_t) mutable {
-                 shader->view(planes.data(), seen, Ci.data());
-                 benchmark::DoNotOptimize(Ci.data());
-             }});
+        seen->A = glm::vec3(0.2f);
+        m_measured.push_back({"shader/" + name + "/view", "ns", "",
+                              "a sample, view(): one light, then diffuse and ambient, one thread",
+                              [shader, planes, seen, size = batch.size,
+                               Ci = std::vector<float>(3 * batch_capacity)](std::size_t) mutable {
+                                  for (const bool lit : {true, false}) {
+                                      shader->view(planes.data(), *seen, 0, size, lit, Ci.data());
+                                      benchmark::DoNotOptimize(Ci.data());
+                                  }
+                              }});
     }
 
     Rows& m_rows;

@@ -86,12 +86,13 @@ public:
 
 private:
     struct Batch;
-    using Lookup = void (*)(const BrickPyramid&, const Batch&) noexcept;
 
     BrickPyramid(const TextureGrid& grid, const std::span<const glm::vec3>* only,
                  InstructionSet limit);
     template <std::size_t n>  // points at once
     static void lookup_batch(const BrickPyramid& pyramid, const Batch& batch) noexcept;
+    template <std::size_t n>
+    void run(const Batch& batch) const noexcept;
 
     std::vector<BrickLevel> m_levels;
     std::vector<BrickPart> m_parts;
@@ -99,7 +100,7 @@ private:
     double m_voxel_size = 1.0;
     glm::dvec3 m_origin{0.0};
     std::vector<std::uint32_t> m_miss;  // a brick of the mean, for where there is none
-    Lookup m_lookup = nullptr, m_lookup_one = nullptr;
+    InstructionSet m_limit;
 };
 
 }  // namespace estara

@@ -26,6 +26,12 @@ struct BlockMask {
         for (const std::uint64_t w : words) n += std::popcount(w);
         return n;
     }
+    /// How many are set before bit i.
+    int before(int i) const noexcept {
+        int n = std::popcount(words[i >> 6] & ((std::uint64_t{1} << (i & 63)) - 1));
+        for (int w = 0; w < i >> 6; ++w) n += std::popcount(words[w]);
+        return n;
+    }
     bool any() const noexcept {
         std::uint64_t all = 0;
         for (const std::uint64_t w : words) all |= w;

@@ -20,6 +20,9 @@ struct ObjectShading {
     BoundShaderPtr shader;
     std::shared_ptr<const BrickPyramid> pyramid;  ///< its baked values; null: evaluated directly
     float filter_width = 1.0f;                    ///< of direct evaluation, object space, > 0
+    /// Baked diffuse light, shadows included (grids/README.md, "Irradiance"); null: from the
+    /// lights.
+    std::shared_ptr<const BrickPyramid> irradiance;
 };
 
 struct FrameSettings {
@@ -27,7 +30,7 @@ struct FrameSettings {
     int spp = 4;                    ///< samples a pixel, >= 1
     std::uint32_t seed = 0;         ///< shifts the sample pattern
     float exposure = 0.0f;          ///< EV: colours times 2^exposure
-    bool shadows = true;     ///< false: nothing casts a shadow, whatever the lights say
+    bool shadows = true;            ///< false: nothing casts a shadow, whatever the lights say
     Aovs aovs;
 };
 
@@ -38,8 +41,9 @@ struct FrameStatistics {
     double view_seconds = 0.0;        ///< the view-dependent part: view()
     double ray_seconds = 0.0;         ///< primary and shadow rays
     std::uint64_t primary_rays = 0, shadow_rays = 0;
-    std::uint64_t samples = 0;     ///< shaded surface points
-    std::uint64_t lookups = 0;     ///< of them, those looked up in a grid
+    std::uint64_t samples = 0;             ///< shaded surface points
+    std::uint64_t lookups = 0;             ///< of them, those looked up in a grid
+    std::uint64_t irradiance_lookups = 0;  ///< samples whose light was looked up, or masked
     std::uint64_t misses = 0;      ///< lookups that found no brick and were evaluated directly
     std::uint64_t bad_pixels = 0;  ///< NaN or infinite, written as 0
 

@@ -22,7 +22,8 @@ struct LoadedGrid {
 std::vector<LoadedGrid> load_grids(const std::vector<std::string>& files);
 
 struct GridMatch {
-    std::vector<int> grid_of_object;  ///< index into the grids; -1: none that fits
+    std::vector<int> grid_of_object;        ///< index into the grids; -1: none that fits
+    std::vector<int> irradiance_of_object;  ///< likewise, of baked light
     std::vector<bool> is_stale;  ///< by object: a grid was meant for it and does not fit any more
     std::vector<std::string> warnings;
 };
@@ -34,6 +35,9 @@ struct GridMatch {
 /// object there is, but stale. It is stale too if the object's shader or a parameter is another one
 /// than it was baked with. An object that wears no shader puts on the grid's, stale or not.
 /// Of several grids that fit the last one wins.
+///
+/// Baked light belongs to the object with its mesh and its name, if it stands in the scene once,
+/// nothing but cameras moves and no light, mesh or place has changed since.
 GridMatch match_grids(Scene& scene, const std::vector<LoadedGrid>& grids);
 
 }  // namespace estara

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -24,6 +25,19 @@ struct Hit {
     float b1 = 0.0f, b2 = 0.0f;     ///< barycentric coordinates, as mesh_point() takes them
     float t = 0.0f;
 };
+
+/// A shadow ray ends a little before its light: what holds the light is often exactly there.
+inline constexpr float shadow_end = 0.9999f;
+
+/// The ray from a point off the surface to a light.
+/// @param L  unit, towards the light
+inline Ray shadow_ray(const PosedLight& light, const glm::vec3& origin,
+                      const glm::vec3& L) noexcept {
+    if (light.type == LightType::directional) {
+        return {origin, L, 0.0f, std::numeric_limits<float>::infinity()};
+    }
+    return {origin, light.position - origin, 0.0f, shadow_end};
+}
 
 /// Rays as structure of arrays: what packets are cut from. Neighbours in it should be neighbours in
 /// space.

@@ -137,6 +137,9 @@ PinholePose pinhole_pose(const Scene& scene, const SceneCamera& camera, const Po
 /// Index of the camera of that name; the first one for "". Error with the names there are.
 int find_camera(const Scene& scene, const std::string& name);
 
+/// Indices of an object's instances.
+std::vector<int> instances_of(const Scene& scene, int object);
+
 /// Objects that a bake of `shader` means: those matching any glob (by object, mesh or node name;
 /// * and ?), or without globs those wearing the shader, or all if none wears any shader at all.
 /// Error, with the names there are, if a glob matches nothing or nothing is left.

@@ -28,6 +28,12 @@ ESTARA_KERNEL float mod(float x, float b) noexcept {
     return r < 0.0f ? 0.0f : (r >= b ? 0.0f : r);  // rounding may leave [0, b) by one ulp
 }
 
+/// a if so, else b, without a branch.
+ESTARA_KERNEL float select(bool so, float a, float b) noexcept { return so ? a : b; }
+ESTARA_KERNEL glm::vec3 select(bool so, const glm::vec3& a, const glm::vec3& b) noexcept {
+    return {so ? a.x : b.x, so ? a.y : b.y, so ? a.z : b.z};
+}
+
 /// 0 if x < edge, else 1.
 ESTARA_KERNEL float step(float edge, float x) noexcept { return x < edge ? 0.0f : 1.0f; }
 

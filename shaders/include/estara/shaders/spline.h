@@ -21,7 +21,15 @@ ESTARA_KERNEL T spline(float x, const std::array<T, n>& knots) noexcept {
     const int whole = int(z);
     const int i = whole < spans ? whole : spans - 1;  // x = 1 is the end of the last span
     const float t = z - float(i);
-    const T &a = knots[i], &b = knots[i + 1], &c = knots[i + 2], &d = knots[i + 3];
+    // Chosen, not indexed: an index that differs from point to point would keep the loop scalar.
+    T a = knots[0], b = knots[1], c = knots[2], d = knots[3];
+#pragma GCC unroll 16
+    for (int k = 1; k < spans; ++k) {
+        a = select(i == k, knots[k], a);
+        b = select(i == k, knots[k + 1], b);
+        c = select(i == k, knots[k + 2], c);
+        d = select(i == k, knots[k + 3], d);
+    }
     const T linear = 0.5f * (c - a);
     const T square = 0.5f * (2.0f * a - 5.0f * b + 4.0f * c - d);
     const T cubic = 0.5f * (3.0f * (b - c) + d - a);
