@@ -98,6 +98,9 @@ private:
         openvdb::io::setVersion(stream, {layout.library_major, layout.library_minor},
                                 layout.format);
         open.grid->readMeta(stream);
+        // OpenVDB allocates what the length of the transform's name says.
+        ByteCursor name(m_bytes.substr(0, stored.buffers), in.at() + std::uint64_t(stream.tellg()));
+        name.skip(name.number<std::uint32_t>());
         open.grid->readTransform(stream);
         open.topology = in.at() + std::uint64_t(stream.tellg());
         return open;
@@ -282,7 +285,9 @@ std::vector<TextureGrid> read_vdb(const std::string& path) {
     } catch (const openvdb::Exception& e) {
         damaged(path, reason(e));
     } catch (const std::ios::failure&) {
-        damaged(path, "the metadata of a grid");
+        damaged(path, "a grid's metadata are cut short");
+    } catch (const Cut&) {
+        damaged(path, "a grid's metadata are cut short");
     } catch (const std::bad_alloc&) {
         if (layout.digest_at != 0) throw;  // its bytes are right: there is too little memory
         throw Error(fmt::format("{}: damaged, or too large for the memory there is", path));

@@ -12,8 +12,12 @@ namespace {
 
 using openvdb::Coord;
 
-/// -1 and 1 in place of distances, a byte each, for signedFloodFill().
+/// -1 and 1 in place of distances, a byte each.
 using SignTree = openvdb::tree::Tree4<std::int8_t, 5, 4, 3>::Type;
+/// The same with leaves of 2^3 values in place of 8^3, for the first and the last are all that
+/// nodes above want to know. Its coordinates are a quarter.
+using CornerTree = openvdb::tree::Tree4<std::int8_t, 5, 4, 1>::Type;
+constexpr int corner_shift = 2;
 
 Coord coord(const glm::ivec3& p) { return {p.x, p.y, p.z}; }
 
@@ -49,24 +53,18 @@ typename GridT::Ptr shell(const std::vector<const Block*>& blocks,
     return grid;
 }
 
-/// Signs of all voxels, flood-filled from the active ones.
-SignTree signs(const std::vector<const Block*>& blocks,
-               const std::function<float(std::uint64_t)>& value) {
-    SignTree tree(1);
-    const auto make = [&](std::size_t b) {
-        const Block& block = *blocks[b];
-        auto leaf = std::make_unique<SignTree::LeafNodeType>(coord(block.origin), std::int8_t{1});
-        set_active(block.active, *leaf);
-        std::uint64_t row = block.first;
-        for_each_bit(block.active, [&](int x, int y, int z) {
-            const auto sign = std::int8_t(value(row++) < 0.0f ? -1 : 1);
-            leaf->buffer().setValue(openvdb::Index(BlockMask::bit(x, y, z)), sign);
-        });
-        return leaf;
-    };
-    add_leaves(blocks.size(), make, tree);
-    openvdb::tools::signedFloodFill(tree);
-    return tree;
+/// Signs of a block's voxels, flood-filled from the active ones.
+std::unique_ptr<SignTree::LeafNodeType> signs(const Block& block,
+                                              const std::function<float(std::uint64_t)>& value) {
+    auto leaf = std::make_unique<SignTree::LeafNodeType>(coord(block.origin), std::int8_t{1});
+    set_active(block.active, *leaf);
+    std::uint64_t row = block.first;
+    for_each_bit(block.active, [&](int x, int y, int z) {
+        const auto sign = std::int8_t(value(row++) < 0.0f ? -1 : 1);
+        leaf->buffer().setValue(openvdb::Index(BlockMask::bit(x, y, z)), sign);
+    });
+    openvdb::tools::SignedFloodFillOp<SignTree>(std::int8_t{1}, std::int8_t{-1})(*leaf);
+    return leaf;
 }
 
 BlockMask negative_inactive(const SignTree::LeafNodeType& leaf) {
@@ -101,19 +99,27 @@ openvdb::Vec3SGrid::Ptr color_shell(const std::vector<const Block*>& blocks,
 std::vector<BlockMask> fill_inside(const std::vector<const Block*>& blocks,
                                    const std::function<float(std::uint64_t)>& value,
                                    openvdb::FloatGrid& to) {
-    const SignTree tree = signs(blocks, value);
+    std::vector<BlockMask> inside(blocks.size());
+    CornerTree tree(1);
+    const auto corners = [&](std::size_t b) {
+        const auto filled = signs(*blocks[b], value);
+        inside[b] = negative_inactive(*filled);
+        using Leaf = CornerTree::LeafNodeType;
+        const Coord origin = coord(blocks[b]->origin >> corner_shift);
+        auto leaf = std::make_unique<Leaf>(origin, std::int8_t{1});
+        leaf->setValueOn(0, filled->getFirstValue());
+        leaf->setValueOn(Leaf::SIZE - 1, filled->getLastValue());
+        return leaf;
+    };
+    add_leaves(blocks.size(), corners, tree);
+    openvdb::tools::signedFloodFill(tree);
     auto tile = tree.cbeginValueAll();
-    tile.setMaxDepth(SignTree::ValueAllCIter::LEAF_DEPTH - 1);
+    tile.setMaxDepth(CornerTree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
         if (*tile >= 0) continue;
-        const auto level = openvdb::Index(tile.getLevel());
-        to.tree().addTile(level, tile.getCoord(), -to.background(), false);
+        const Coord at = tile.getCoord() << corner_shift;
+        to.tree().addTile(openvdb::Index(tile.getLevel()), at, -to.background(), false);
     }
-    std::vector<const SignTree::LeafNodeType*> leaves;
-    tree.getNodes(leaves);
-    std::vector<BlockMask> inside(leaves.size());
-    tbb::parallel_for(std::size_t{0}, leaves.size(),
-                      [&](std::size_t b) { inside[b] = negative_inactive(*leaves[b]); });
     return inside;
 }
 

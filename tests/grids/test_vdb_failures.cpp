@@ -179,6 +179,16 @@ TEST(ReadVdb, PassesOnWhatOpenVdbSaysOfDamagedVoxels) {
                                     "bake it again");
 }
 
+TEST(ReadVdb, BelievesNoLengthInATransform) {
+    const TemporaryFolder folder;
+    std::string bytes = small_file(folder);
+    const std::string path = folder.file("a.vdb");
+    replace_all(bytes, "estara_digest", "unknown_thing");
+    bytes.replace(bytes.find("UniformScaleTranslateMap") - 4, 4, "\xff\xff\xff\xff");
+    write_bytes(path, bytes);
+    EXPECT_EQ(read_error(path), path + ": damaged: a grid's metadata are cut short; bake it again");
+}
+
 TEST(ReadVdb, SaysWhichGridIsMissing) {
     const TemporaryFolder folder;
     write_vdb(folder.file("whole.vdb"), {complete_grid("", 0.1)}, {});

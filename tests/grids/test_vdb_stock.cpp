@@ -104,7 +104,9 @@ TEST(StockOpenVdb, FindsTheInsideOfAClosedSurfaceFilled) {
     TextureGrid grid = sphere_grid({}, 0.015, {{"color", 3}});
     for (Block& block : grid.levels[0].blocks) block.origin += glm::ivec3(4096 - 64, 0, 4096 - 80);
     grid.shader = "plain";
+    grid.tool_version = "0.1.0";
     write_vdb(folder.file("a.vdb"), {grid}, {});
+    expect_same(read_vdb(folder.file("a.vdb"))[0], grid);  // whose blocks have another order
     const openvdb::GridPtrVec grids = read_by_openvdb(folder.file("a.vdb"));
     const auto surface = openvdb::gridPtrCast<FloatGrid>(openvdb::findGridByName(grids, "surface"));
     ASSERT_TRUE(surface);

@@ -138,7 +138,7 @@ struct VdbWriteOptions {
 
 /// Writes grids of one or several objects as a .vdb file that any OpenVDB program can read
 /// (grids/README.md is the format). A name that a reader would see twice is an Error. Takes at
-/// most some 8 bytes of memory a voxel, and 50 MB, beside the grids.
+/// most some 6 bytes of memory a voxel, and 4 MB a thread, beside the grids.
 ///
 /// Written to a temporary file in the same folder, closed, size compared, reopened and compared
 /// with what was meant to be written (grid list, digest of every piece), fsync'd and renamed: under
