@@ -78,13 +78,15 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int 
     };
     const double first = std::countr_zero(bits), last = std::bit_width(bits) - 1;
     constexpr double tie = 1e-9;
+    // Not converted from whole numbers: 16 of those fill the vector that holds 8 doubles.
+    constexpr std::array<double, 8> lanes{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
 
     const auto row = std::size_t(x * 64 + y * 8);
     double* const __restrict distances = nearest.distance2.data() + row;
     double* const __restrict heights = nearest.height.data() + row;
     double* const __restrict triangles = nearest.triangle.data() + row;
-    for (int i = 0; i < 8; ++i) {
-        const double z = double(i);
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double z = lanes[i];
         const double height = number(TrianglePlanes::height, z);
         double in_plane = std::numeric_limits<double>::infinity(), outmost = -in_plane;
         for (int e = 0; e < 3; ++e) {
@@ -94,8 +96,7 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int 
             in_plane = smaller(in_plane, beside * beside + past * past);
             outmost = larger(outmost, beside);
         }
-        const double distance2 =
-            height * height + (outmost <= planes.inside ? 0.0 : in_plane);
+        const double distance2 = height * height + (outmost <= planes.inside ? 0.0 : in_plane);
         const double facing = height * planes.faces;
         const bool closer = distance2 < distances[i] - tie;
         const bool tied = distance2 <= distances[i] + tie;

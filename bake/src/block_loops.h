@@ -27,8 +27,7 @@ struct CellRows {
 
     /// Bit z is voxel (x, y, z): whether it is a corner of a cell here.
     unsigned corners(std::size_t x, std::size_t y) const noexcept {
-        const unsigned cells =
-            rows[x][y] | rows[x][y + 1] | rows[x + 1][y] | rows[x + 1][y + 1];
+        const unsigned cells = rows[x][y] | rows[x][y + 1] | rows[x + 1][y] | rows[x + 1][y + 1];
         return (cells | (cells >> 1)) & 0xffu;
     }
 };
@@ -37,8 +36,8 @@ struct CellRows {
 /// width of numbers is what compilers make wide.
 struct alignas(64) NearestTriangles {
     std::array<double, 512> distance2;  ///< voxels squared; infinite: none
-    std::array<double, 512> height;     ///< above its plane, voxels; below is behind. 0 if it has none
-    std::array<double, 512> triangle;   ///< a whole number
+    std::array<double, 512> height;  ///< above its plane, voxels; below is behind. 0 if it has none
+    std::array<double, 512> triangle;  ///< a whole number
 
     void clear() noexcept {
         distance2.fill(std::numeric_limits<double>::infinity());

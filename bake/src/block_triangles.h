@@ -12,8 +12,8 @@ namespace estara {
 
 /// Blocks of 8^3 voxels and the triangles that may cross a cell around one of their voxels.
 struct BlockTriangles {
-    std::vector<glm::ivec3> blocks;    ///< voxel origin / 8, ascending by (x, y, z)
-    std::vector<std::uint64_t> first;  ///< of a block's triangles; one more at the end
+    std::vector<glm::ivec3> blocks;        ///< voxel origin / 8, ascending by (x, y, z)
+    std::vector<std::uint64_t> first;      ///< of a block's triangles; one more at the end
     std::vector<std::uint32_t> triangles;  ///< ascending within a block
 };
 

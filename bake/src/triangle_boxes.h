@@ -54,8 +54,8 @@ public:
             far += std::max(0.0, size * m_n[c]);
             near += std::min(0.0, size * m_n[c]);
         }
-        const double offset = m_n.x * (start - v[0].x) + m_n.y * (start - v[0].y) +
-                              m_n.z * (start - v[0].z);
+        const double offset =
+            m_n.x * (start - v[0].x) + m_n.y * (start - v[0].y) + m_n.z * (start - v[0].z);
         m_far = offset + far;
         m_near = offset + near;
         m_inverse = 1.0 / m_n.z;

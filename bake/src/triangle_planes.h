@@ -46,8 +46,8 @@ struct alignas(64) TrianglePlanes {
             inside = 0.0;
             faces = 1.0;
         } else {
-            const glm::dvec3 other = std::abs(longest.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0)
-                                                               : glm::dvec3(0.0, 1.0, 0.0);
+            const glm::dvec3 other =
+                std::abs(longest.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
             normal = glm::cross(longest, other);
             normal /= std::sqrt(glm::dot(normal, normal));
             inside = -std::numeric_limits<double>::infinity();

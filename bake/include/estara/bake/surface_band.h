@@ -23,7 +23,7 @@ struct SurfaceBand {
 
     double voxel_size = 1.0;  ///< object space
     glm::dvec3 origin{0.0};   ///< object position of voxel (0, 0, 0)
-    double slack = 0.0;       ///< how much larger than a voxel cells are taken, on each side, in voxels
+    double slack = 0.0;  ///< how much larger than a voxel cells are taken, on each side, in voxels
     std::vector<Block> blocks;
     std::vector<BlockMask> cells;          ///< by block
     std::vector<Near> near;                ///< by block: those that may cross a cell around a voxel
