@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "triangle_boxes.h"
 #include "triangle_planes.h"
@@ -15,60 +17,51 @@ struct Span {
     int lo, hi;
 };
 
-/// The cells of a block, counted from `first`, that lie in a range.
-ESTARA_KERNEL Span cells_in(const Range& range, double first) noexcept {
+/// The numbers from 0 to last that lie in a range when counted from `first` on.
+ESTARA_KERNEL Span count_from(double first, int last, const Range& range) noexcept {
     const double lo = std::max(range.lo - first, 0.0);
-    const double hi = std::min(range.hi - first, double(CellRows::side - 1));
+    const double hi = std::min(range.hi - first, double(last));
     if (!(lo <= hi)) return {0, -1};
     return {ceil_to_int(lo), floor_to_int(hi)};
-}
-
-/// Adds the cells that one triangle meets.
-/// @return  the x of rows that may have changed
-ESTARA_KERNEL Span mark_triangle(const std::array<glm::dvec3, 3>& v, double slack,
-                                 const glm::ivec3& origin, CellRows& cells) noexcept {
-    const TriangleBoxes boxes(v, -slack, 1.0 + 2.0 * slack);
-    const glm::dvec3 first = glm::dvec3(origin) - 1.0;
-    const Span xs = cells_in(boxes.bounds[0], first.x);
-    const Span ys = cells_in(boxes.bounds[1], first.y);
-    Range within{first.z, first.z + double(CellRows::side - 1)};
-    clip(within, boxes.bounds[2]);
-    if (!(within.lo <= within.hi)) return {0, -1};
-
-    std::array<double, CellRows::side> lo, hi;  // of z, by y
-    for (int y = ys.lo; y <= ys.hi; ++y) {
-        Range z = within;
-        clip(z, boxes.z_of_y(first.y + double(y)));
-        lo[std::size_t(y)] = z.lo;
-        hi[std::size_t(y)] = z.hi;
-    }
-    for (int x = xs.lo; x <= xs.hi; ++x) {
-        const double cell_x = first.x + double(x);
-        const Range z_of_x = boxes.z_of_x(cell_x);
-        Range y_of_x = boxes.bounds[1];
-        clip(y_of_x, boxes.y_of_x(cell_x));
-        const Span column = cells_in(y_of_x, first.y);
-        auto& row = cells.rows[std::size_t(x)];
-        for (int y = column.lo; y <= column.hi; ++y) {
-            Range z{lo[std::size_t(y)], hi[std::size_t(y)]};
-            clip(z, z_of_x);
-            clip(z, boxes.z_of_plane(cell_x, first.y + double(y)));
-            // An empty range may be anything: these bounds make it no bits.
-            const int from = ceil_to_int(std::min(z.lo - first.z, double(CellRows::side)));
-            const int to = 1 + floor_to_int(std::max(z.hi - first.z, -1.0));
-            row[std::size_t(y)] |= std::uint16_t(((1 << to) - 1) & ~((1 << from) - 1));
-        }
-    }
-    return xs;
 }
 
 ESTARA_KERNEL double larger(double a, double b) noexcept { return a > b ? a : b; }
 ESTARA_KERNEL double smaller(double a, double b) noexcept { return a < b ? a : b; }
 
-/// Takes a triangle into account for the voxels (x, y, 0) to (x, y, 7) of which bits are set; they
-/// are neighbours.
+/// 2^n as a number; n whole, [0, 1000].
+ESTARA_KERNEL double power_of_two(double n) noexcept {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(n + (0x1p52 + 1023.0)) << 52);
+}
+
+/// Adds the cells that one triangle meets.
+ESTARA_KERNEL void mark_triangle(const std::array<glm::dvec3, 3>& v, double slack,
+                                 const glm::ivec3& origin, CellRows& cells) noexcept {
+    const TriangleBoxes boxes(v, -slack, 1.0 + 2.0 * slack);
+    const glm::dvec3 first = glm::dvec3(origin) - 1.0;
+    const Span xs = count_from(first.x, CellRows::side - 1, boxes.bounds[0]);
+    const Span ys = count_from(first.y, CellRows::side - 1, boxes.bounds[1]);
+    for (int y = ys.lo; y <= ys.hi; y += 8) {  // twice only for one that crosses the block
+        const Ranges rows = boxes.z_of_rows(first.y + double(y));
+        for (int x = xs.lo; x <= xs.hi; ++x) {
+            const Ranges z = boxes.z_of_boxes(first.x + double(x), first.y + double(y), rows);
+            std::array<double, 8> bits;
+            for (std::size_t i = 0; i < 8; ++i) {
+                const double lo = larger(z.lo[i] - first.z, 0.0);
+                const double hi = smaller(z.hi[i] - first.z, double(CellRows::side - 1));
+                // From bit ceil(lo) to bit floor(hi), as a number; none if that is below 0.
+                const double from = power_of_two(std::ceil(smaller(lo, double(CellRows::side))));
+                const double to = power_of_two(std::floor(larger(hi, -1.0)) + 1.0);
+                bits[i] = larger(to - from, 0.0);
+            }
+            std::uint16_t* const row = &cells.rows[std::size_t(x)][std::size_t(y)];
+            for (std::size_t i = 0; i < 8; ++i) row[i] |= std::uint16_t(int(bits[i]));
+        }
+    }
+}
+
+/// Takes a triangle into account for voxels (x, y, z) of which z lies in [first, last].
 ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int x, int y,
-                             unsigned bits, NearestTriangles& nearest) noexcept {
+                             double first, double last, NearestTriangles& nearest) noexcept {
     std::array<double, 8> at;  // the planes' numbers at (x, y, 0)
     for (std::size_t k = 0; k < 8; ++k) {
         at[k] = planes.w[k] + planes.x[k] * double(x) + planes.y[k] * double(y);
@@ -76,10 +69,7 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int 
     const auto number = [&](int k, double z) {
         return at[std::size_t(k)] + planes.z[std::size_t(k)] * z;
     };
-    const double first = std::countr_zero(bits), last = std::bit_width(bits) - 1;
     constexpr double tie = 1e-9;
-    // Not converted from whole numbers: 16 of those fill the vector that holds 8 doubles.
-    constexpr std::array<double, 8> lanes{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
 
     const auto row = std::size_t(x * 64 + y * 8);
     double* const __restrict distances = nearest.distance2.data() + row;
@@ -115,19 +105,26 @@ ESTARA_KERNEL void mark_loop(const BlockInput& in, CellRows& cells) noexcept {
 }
 
 ESTARA_KERNEL void nearest_loop(const BlockInput& in, NearestTriangles& nearest) noexcept {
-    CellRows cells;
+    const glm::dvec3 first(in.origin);
     for (const std::uint32_t t : in.triangles) {
         std::array<glm::dvec3, 3> v = in.lattice.corners(in.mesh, t);
-        const Span xs = mark_triangle(v, in.lattice.slack, in.origin, cells);
-        for (glm::dvec3& corner : v) corner -= glm::dvec3(in.origin);
+        // The eight cells around a voxel, each as large as it was marked, are a box.
+        const double reach = 1.0 + in.lattice.slack;
+        const TriangleBoxes boxes(v, -reach, 2.0 * reach);
+        const Span xs = count_from(first.x, 7, boxes.bounds[0]);
+        const Span ys = count_from(first.y, 7, boxes.bounds[1]);
+        if (xs.lo > xs.hi || ys.lo > ys.hi) continue;
+        for (glm::dvec3& corner : v) corner -= first;
         const TrianglePlanes planes(v);
-        for (int x = std::max(xs.lo - 1, 0); x <= std::min(xs.hi, 7); ++x) {
-            for (int y = 0; y < 8; ++y) {
-                const unsigned bits = cells.corners(std::size_t(x), std::size_t(y));
-                if (bits != 0) visit_row(planes, double(t), x, y, bits, nearest);
+        const Ranges rows = boxes.z_of_rows(first.y);
+        for (int x = xs.lo; x <= xs.hi; ++x) {
+            const Ranges z = boxes.z_of_boxes(first.x + double(x), first.y, rows);
+            for (int y = ys.lo; y <= ys.hi; ++y) {
+                const double lo = larger(z.lo[std::size_t(y)] - first.z, 0.0);
+                const double hi = smaller(z.hi[std::size_t(y)] - first.z, 7.0);
+                if (lo <= hi) visit_row(planes, double(t), x, y, lo, hi, nearest);
             }
         }
-        for (int x = xs.lo; x <= xs.hi; ++x) cells.rows[std::size_t(x)] = {};
     }
 }
 

@@ -17,11 +17,26 @@ ESTARA_KERNEL int floor_to_int(double x) noexcept {
 }
 ESTARA_KERNEL int ceil_to_int(double x) noexcept { return -floor_to_int(-x); }
 
+/// Eight rows side by side. 0 to 7 as numbers: converting whole ones would halve the loops' width,
+/// because 16 of those fill the vector that holds 8 doubles.
+inline constexpr std::array<double, 8> lanes{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
+
 /// The numbers from lo to hi; none if lo > hi.
 struct Range {
     double lo = -std::numeric_limits<double>::infinity();
     double hi = std::numeric_limits<double>::infinity();
 };
+
+/// A range for each of eight rows.
+struct Ranges {
+    std::array<double, 8> lo, hi;
+};
+
+/// Makes a range smaller; a bound that is not a number does nothing.
+ESTARA_KERNEL void clip(Range& range, const Range& by) noexcept {
+    range.lo = by.lo > range.lo ? by.lo : range.lo;
+    range.hi = by.hi < range.hi ? by.hi : range.hi;
+}
 
 /// Box i (three whole numbers) spans start + i to start + i + size in each axis: boxes of size 1
 /// share faces, larger ones overlap.
@@ -82,6 +97,46 @@ public:
         return {-(s + m_far) * m_inverse, -(s + m_near) * m_inverse};
     }
 
+    /// z_of_y() for y, y + 1, ... y + 7, within bounds.
+    ESTARA_KERNEL Ranges z_of_rows(double y) const noexcept {
+        Ranges z;
+        z.lo.fill(bounds[2].lo);
+        z.hi.fill(bounds[2].hi);
+        for (const Edge& e : m_z_of_y) {
+            std::array<double, 8> t;
+            for (std::size_t i = 0; i < 8; ++i) {
+                t[i] = (e.known * (y + lanes[i]) + e.rest) * e.inverse;
+            }
+            if (e.lower) {
+                for (std::size_t i = 0; i < 8; ++i) z.lo[i] = -t[i] > z.lo[i] ? -t[i] : z.lo[i];
+            } else {
+                for (std::size_t i = 0; i < 8; ++i) z.hi[i] = t[i] < z.hi[i] ? t[i] : z.hi[i];
+            }
+        }
+        return z;
+    }
+
+    /// The z for which boxes (x, y, z), (x, y + 1, z), ... (x, y + 7, z) meet the triangle.
+    /// @param rows  z_of_rows(y)
+    ESTARA_KERNEL Ranges z_of_boxes(double x, double y, const Ranges& rows) const noexcept {
+        const Range zs = z_of_x(x);
+        Range ys = bounds[1];
+        clip(ys, y_of_x(x));
+        Ranges z;
+        for (std::size_t i = 0; i < 8; ++i) {
+            const double at = y + lanes[i];
+            const double s = m_n.x * x + m_n.y * at;
+            const double plane_lo = -(s + m_far) * m_inverse, plane_hi = -(s + m_near) * m_inverse;
+            const double lo = zs.lo > rows.lo[i] ? zs.lo : rows.lo[i];
+            const double hi = zs.hi < rows.hi[i] ? zs.hi : rows.hi[i];
+            const bool inside = (at >= ys.lo) & (at <= ys.hi);
+            z.lo[i] = plane_lo > lo ? plane_lo : lo;
+            const double top = plane_hi < hi ? plane_hi : hi;
+            z.hi[i] = inside ? top : -std::numeric_limits<double>::infinity();
+        }
+        return z;
+    }
+
 private:
     /// The inequality known * a + solved * b + rest >= 0 of boxes (a, b) on an edge's inner side in
     /// a projection, solved for b. If `solved` is 0 the bound is infinite or, where the edge itself
@@ -117,11 +172,5 @@ private:
     double m_far, m_near, m_inverse;
     std::array<Edge, 3> m_y_of_x, m_z_of_x, m_z_of_y;
 };
-
-/// Makes a range smaller; a bound that is not a number does nothing.
-ESTARA_KERNEL void clip(Range& range, const Range& by) noexcept {
-    range.lo = by.lo > range.lo ? by.lo : range.lo;
-    range.hi = by.hi < range.hi ? by.hi : range.hi;
-}
 
 }  // namespace estara
