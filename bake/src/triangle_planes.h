@@ -1,6 +1,7 @@
 // A triangle prepared for the distances of many points.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
@@ -26,36 +27,36 @@ struct alignas(64) TrianglePlanes {
     double inside;               ///< all `beside` are at most that if the point is above the inside
     double faces;                ///< 1; 0 for a degenerate triangle
 
+    TrianglePlanes() = default;
     ESTARA_KERNEL explicit TrianglePlanes(const std::array<glm::dvec3, 3>& v) noexcept {
         const std::array<glm::dvec3, 3> edge{v[1] - v[0], v[2] - v[1], v[0] - v[2]};
-        std::array<double, 3> length;
+        std::array<double, 3> length, inverse;
         glm::dvec3 longest(1.0, 0.0, 0.0);
         double most = 0.0;
         for (std::size_t e = 0; e < 3; ++e) {
             length[e] = std::sqrt(glm::dot(edge[e], edge[e]));
+            inverse[e] = 1.0 / length[e];
             half[e] = 0.5 * length[e];
-            if (length[e] > most) {
-                most = length[e];
-                longest = edge[e] / most;
-            }
+            longest = length[e] > most ? edge[e] * inverse[e] : longest;
+            most = std::max(most, length[e]);
         }
         glm::dvec3 normal = glm::cross(edge[0], edge[1]);
         const double area2 = std::sqrt(glm::dot(normal, normal));
         if (area2 > 1e-12 * most * most) {
-            normal /= area2;
+            normal *= 1.0 / area2;
             inside = 0.0;
             faces = 1.0;
         } else {
             const glm::dvec3 other =
                 std::abs(longest.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
             normal = glm::cross(longest, other);
-            normal /= std::sqrt(glm::dot(normal, normal));
+            normal *= 1.0 / std::sqrt(glm::dot(normal, normal));
             inside = -std::numeric_limits<double>::infinity();
             faces = 0.0;
         }
         set(height, normal, v[0]);
         for (std::size_t e = 0; e < 3; ++e) {
-            const glm::dvec3 way = length[e] > 0.0 ? edge[e] / length[e] : longest;
+            const glm::dvec3 way = length[e] > 0.0 ? edge[e] * inverse[e] : longest;
             set(beside + int(e), glm::cross(way, normal), v[e]);
             set(along + int(e), way, v[e] + 0.5 * edge[e]);
         }

@@ -167,7 +167,7 @@ public:
     static constexpr int planes = 3;
     using Record = std::array<float, planes + 1>;
 
-    /// @param first  plane; those after the last one count as 0
+    /// @param first  plane; where fewer than three follow, the last one is there again
     void gather(const GridLevel& fine, const glm::ivec3& coarse_origin, std::size_t first) {
         clear();
         for_each_block_in(fine.blocks, 2 * coarse_origin - 8, 3,
@@ -199,14 +199,17 @@ private:
     }
 
     void clear() noexcept {
-        for (const std::uint16_t i : m_filled) m_records[i] = {};
-        m_filled.clear();
+        for (std::size_t i = 0; i < m_count; ++i) m_records[m_filled[i]] = {};
+        m_count = 0;
     }
 
     /// @param shift  position of the block's corner in the cube; -7 if only its last layer is in
     void add(const GridLevel& fine, const Block& block, const glm::ivec3& shift,
              std::size_t first) {
-        const std::size_t count = std::min<std::size_t>(planes, fine.planes.size() - first);
+        std::array<const float*, planes> values;  // the last one again where there are too few
+        for (std::size_t c = 0; c < planes; ++c) {
+            values[c] = fine.planes[std::min(first + c, fine.planes.size() - 1)].data();
+        }
         std::uint64_t layer = ~std::uint64_t{0};
         if (shift.y < 0) layer &= std::uint64_t{0xff} << 56;
         if (shift.z < 0) layer &= 0x80 * every_byte;
@@ -221,16 +224,15 @@ private:
                 const int bit = std::countr_zero(left);
                 if (((layer >> bit) & 1) == 0) continue;
                 const std::size_t i = at(x + shift.x, (bit >> 3) + shift.y, (bit & 7) + shift.z);
-                Record& record = m_records[i];
-                for (std::size_t c = 0; c < count; ++c) record[c] = fine.planes[first + c][row];
-                record[planes] = 1.0f;
-                m_filled.push_back(std::uint16_t(i));
+                m_records[i] = {values[0][row], values[1][row], values[2][row], 1.0f};
+                m_filled[m_count++] = std::uint16_t(i);
             }
         }
     }
 
     std::vector<Record> m_records = std::vector<Record>(side * side * side);
-    std::vector<std::uint16_t> m_filled;
+    std::vector<std::uint16_t> m_filled = std::vector<std::uint16_t>(side * side * side);
+    std::size_t m_count = 0;
 };
 
 /// Fills the planes of a coarse block.
@@ -243,7 +245,8 @@ private:
 /// Sums are in double, where 27 floats times whole numbers up to 8 are exact if the floats are
 /// alike: a constant stays the same constant.
 void average(const GridLevel& fine, const Block& block, GridLevel& coarse) {
-    thread_local FineCube near;  // 80 KB that every block needs
+    thread_local FineCube cube;  // 80 KB that every block needs
+    FineCube& near = cube;       // looked up once
     for (std::size_t first = 0; first < fine.planes.size(); first += FineCube::planes) {
         const std::size_t end = std::min(first + FineCube::planes, fine.planes.size());
         near.gather(fine, block.origin, first);
