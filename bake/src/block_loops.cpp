@@ -155,31 +155,31 @@ using NearestLoop = void (*)(const BlockInput&, NearestTriangles&) noexcept;
 }
 #endif
 
-MarkLoop widest_mark_loop() noexcept {
+MarkLoop widest_mark_loop([[maybe_unused]] InstructionSet limit) noexcept {
 #ifdef ESTARA_DISPATCH
-    if (__builtin_cpu_supports("x86-64-v3")) return mark_avx2;
+    if (limit >= InstructionSet::avx2 && __builtin_cpu_supports("x86-64-v3")) return mark_avx2;
 #endif
     return mark_baseline;
 }
 
-NearestLoop widest_nearest_loop() noexcept {
+NearestLoop widest_nearest_loop([[maybe_unused]] InstructionSet limit) noexcept {
 #ifdef ESTARA_DISPATCH
-    if (__builtin_cpu_supports("x86-64-v4")) return nearest_avx512;
-    if (__builtin_cpu_supports("x86-64-v3")) return nearest_avx2;
+    if (limit >= InstructionSet::avx512 && __builtin_cpu_supports("x86-64-v4")) {
+        return nearest_avx512;
+    }
+    if (limit >= InstructionSet::avx2 && __builtin_cpu_supports("x86-64-v3")) return nearest_avx2;
 #endif
     return nearest_baseline;
 }
 
 }  // namespace
 
-void mark_cells(const BlockInput& in, CellRows& cells) noexcept {
-    static const MarkLoop loop = widest_mark_loop();
-    loop(in, cells);
+void mark_cells(const BlockInput& in, CellRows& cells, InstructionSet limit) noexcept {
+    widest_mark_loop(limit)(in, cells);
 }
 
-void find_nearest(const BlockInput& in, NearestTriangles& nearest) noexcept {
-    static const NearestLoop loop = widest_nearest_loop();
-    loop(in, nearest);
+void find_nearest(const BlockInput& in, NearestTriangles& nearest, InstructionSet limit) noexcept {
+    widest_nearest_loop(limit)(in, nearest);
 }
 
 }  // namespace estara

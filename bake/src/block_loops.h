@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "estara/shaders/registry.h"
 #include "lattice.h"
 
 namespace estara {
@@ -47,13 +48,16 @@ struct alignas(64) NearestTriangles {
 };
 
 /// Adds the cells that the triangles meet.
-void mark_cells(const BlockInput& in, CellRows& cells) noexcept;
+void mark_cells(const BlockInput& in, CellRows& cells,
+                InstructionSet limit = InstructionSet::avx512) noexcept;
 
 /// For each voxel the nearest of the triangles that meet a cell around it. Of triangles equally
 /// near (they share the nearest edge or vertex) the one that faces the voxel most: the others may
 /// see it from behind although it is in front of the surface.
 ///
-/// Both run the widest instruction set of the machine; the bits are the same on all of them.
-void find_nearest(const BlockInput& in, NearestTriangles& nearest) noexcept;
+/// Both run the widest instruction set of the machine, but none wider than `limit`; the bits are
+/// the same on all of them.
+void find_nearest(const BlockInput& in, NearestTriangles& nearest,
+                  InstructionSet limit = InstructionSet::avx512) noexcept;
 
 }  // namespace estara
