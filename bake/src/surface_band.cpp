@@ -91,8 +91,8 @@ const NearestTriangles& nearest_triangles(const BlockInput& in) noexcept {
 /// What was found for voxel `bit`, with the sign of the side.
 float signed_distance(const NearestTriangles& nearest, std::size_t bit,
                       double voxel_size) noexcept {
-    const double distance = std::sqrt(nearest.distance2[bit]) * voxel_size;
-    return float(nearest.height[bit] < 0.0 ? -distance : distance);
+    const double side = 1.0 - 2.0 * double(nearest.height[bit] < 0.0);  // no branch: it is random
+    return float(side * std::sqrt(nearest.distance2[bit]) * voxel_size);
 }
 
 double ratio(double a, double b) noexcept { return b > 0.0 ? a / b : 0.0; }
