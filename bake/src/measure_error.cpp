@@ -81,6 +81,7 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
     const auto floats = std::size_t(shader.info().baked_floats);
     Reference reference{std::vector<glm::vec3>(samples), {}};
     reference.values.assign(floats, std::vector<float>(samples));
+    const bool needs_tangent = shader.domain() == Domain::surface;
     tbb::parallel_for(std::size_t{0}, (samples + batch_size - 1) / batch_size, [&](std::size_t b) {
         // A generator for each batch: the points do not depend on who works on which batch.
         std::mt19937_64 random(seed * 0x9e3779b97f4a7c15u + b);
@@ -94,7 +95,7 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
         for (int i = 0; i < batch.size; ++i) {
             const double x = uniform(random), y = uniform(random), z = uniform(random);
             const MeshPoint m = sampler.at({x, y, z});
-            batch.set(i, m.P, m.N, m.uv, tangent(mesh, m));
+            batch.set(i, m.P, m.N, m.uv, needs_tangent ? tangent(mesh, m) : glm::vec3(1, 0, 0));
             reference.P[first + std::size_t(i)] = m.P;
         }
         shader.bake(batch, planes.data());
