@@ -98,7 +98,7 @@ BoundedBake bake_to_error(const Mesh& mesh, const BoundShader& shader, double ma
         }
         TextureGrid grid = bake_mesh(mesh, shader, size, half,
                                      begin ? begin(size, estimate.voxels) : VoxelsDone{});
-        grid.errors = measure_error(mesh, shader, BrickPyramid(grid), size, error_samples, seed);
+        grid.errors = measure_error(mesh, shader, grid, error_samples, seed);
         ++result.attempts;
         const Trial trial{size, worst_rmse(grid)};
         if (trial.error <= max_error) {

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "estara/bake/bake.h"
+#include "estara/grids/bricks.h"
 
 namespace estara {
 
@@ -42,13 +44,6 @@ private:
     std::vector<double> m_area;  ///< of the triangles up to and with this one
 };
 
-/// The value below which a fraction of the (reordered) values lies.
-double quantile(std::vector<float>& values, double fraction) {
-    const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 ErrorFigures figures(std::vector<float>& errors, std::uint64_t samples) {
     ErrorFigures f;
     double sum = 0.0, squares = 0.0;
@@ -58,48 +53,87 @@ ErrorFigures figures(std::vector<float>& errors, std::uint64_t samples) {
     }
     f.mean = sum / double(errors.size());
     f.rmse = std::sqrt(squares / double(errors.size()));
-    f.p99 = quantile(errors, 0.99);
-    f.p999 = quantile(errors, 0.999);
-    f.max = *std::max_element(errors.begin(), errors.end());
+    // The values below which a fraction lies; each search leaves the larger ones behind it.
+    const auto quantile = [&](double fraction) {
+        return errors.begin() + std::ptrdiff_t(fraction * double(errors.size() - 1));
+    };
+    const auto p99 = quantile(0.99), p999 = quantile(0.999);
+    std::nth_element(errors.begin(), p99, errors.end());
+    f.p99 = *p99;
+    std::nth_element(p99, p999, errors.end());
+    f.p999 = *p999;
+    f.max = *std::max_element(p999, errors.end());
     f.samples = samples;
     return f;
+}
+
+constexpr std::size_t batch_size = SurfaceBatch::capacity;
+
+/// Points and what the shader gives there.
+struct Reference {
+    std::vector<glm::vec3> P;
+    std::vector<std::vector<float>> values;  ///< [float of the record][point]
+};
+
+Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_width,
+                   std::uint64_t samples, std::uint64_t seed) {
+    const SurfaceSampler sampler(mesh);
+    const auto floats = std::size_t(shader.info().baked_floats);
+    Reference reference{std::vector<glm::vec3>(samples), {}};
+    reference.values.assign(floats, std::vector<float>(samples));
+    const bool needs_tangent = shader.domain() == Domain::surface;
+    tbb::parallel_for(std::size_t{0}, (samples + batch_size - 1) / batch_size, [&](std::size_t b) {
+        // A generator for each batch: the points do not depend on who works on which batch.
+        std::mt19937_64 random(seed * 0x9e3779b97f4a7c15u + b);
+        std::uniform_real_distribution<double> uniform;
+        thread_local SurfaceBatch batch;
+        thread_local std::vector<float> planes;
+        planes.resize(floats * batch_size);
+        const std::size_t first = b * batch_size;
+        batch.size = int(std::min(batch_size, samples - first));
+        batch.filter_width = float(filter_width);
+        for (int i = 0; i < batch.size; ++i) {
+            const double x = uniform(random), y = uniform(random), z = uniform(random);
+            const MeshPoint m = sampler.at({x, y, z});
+            batch.set(i, m.P, m.N, m.uv, needs_tangent ? tangent(mesh, m) : glm::vec3(1, 0, 0));
+            reference.P[first + std::size_t(i)] = m.P;
+        }
+        shader.bake(batch, planes.data());
+        for (std::size_t k = 0; k < floats; ++k) {
+            std::copy_n(planes.begin() + std::ptrdiff_t(k * batch_size), batch.size,
+                        reference.values[k].begin() + std::ptrdiff_t(first));
+        }
+    });
+    return reference;
+}
+
+/// Replaces values by their distance from what a lookup on the finest level gives.
+void subtract_lookup(const BrickPyramid& pyramid, Reference& reference) {
+    const std::size_t samples = reference.P.size(), floats = reference.values.size();
+    static constexpr std::array<float, batch_size> finest{};  // footprints
+    tbb::parallel_for(std::size_t{0}, (samples + batch_size - 1) / batch_size, [&](std::size_t b) {
+        const std::size_t first = b * batch_size, count = std::min(batch_size, samples - first);
+        std::array<float, BrickPyramid::max_floats * batch_size> planes;
+        std::array<std::uint8_t, batch_size> found;
+        pyramid.lookup(std::span(reference.P).subspan(first, count), std::span(finest).first(count),
+                       planes.data(), batch_size, found.data());
+        for (std::size_t k = 0; k < floats; ++k) {
+            for (std::size_t i = 0; i < count; ++i) {
+                float& value = reference.values[k][first + i];
+                value = std::abs(planes[k * batch_size + i] - value);
+            }
+        }
+    });
 }
 
 }  // namespace
 
 std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& shader,
-                                        const BrickPyramid& pyramid, double filter_width,
-                                        std::uint64_t samples, std::uint64_t seed) {
-    const SurfaceSampler sampler(mesh);
-    const auto floats = std::size_t(shader.info().baked_floats);
-    std::vector<std::vector<float>> errors(floats, std::vector<float>(samples));
-    constexpr std::uint64_t batch_size = SurfaceBatch::capacity;
-
-    tbb::parallel_for(
-        std::uint64_t{0}, (samples + batch_size - 1) / batch_size, [&](std::uint64_t b) {
-            // A generator for each batch: the points do not depend on who works on which batch.
-            std::mt19937_64 random(seed * 0x9e3779b97f4a7c15u + b);
-            std::uniform_real_distribution<double> uniform;
-            thread_local SurfaceBatch batch;
-            thread_local std::vector<float> planes;
-            planes.resize(floats * batch_size);
-            batch.size = int(std::min(batch_size, samples - b * batch_size));
-            batch.filter_width = float(filter_width);
-            for (int i = 0; i < batch.size; ++i) {
-                const double x = uniform(random), y = uniform(random), z = uniform(random);
-                const MeshPoint m = sampler.at({x, y, z});
-                batch.set(i, m.P, m.N, m.uv, tangent(mesh, m));
-            }
-            shader.bake(batch, planes.data());
-            for (int i = 0; i < batch.size; ++i) {
-                std::array<float, BrickPyramid::max_floats> value{};
-                pyramid.lookup({batch.P[0][i], batch.P[1][i], batch.P[2][i]}, 0, value.data());
-                for (std::size_t k = 0; k < floats; ++k) {
-                    const float exact = planes[k * batch_size + std::size_t(i)];
-                    errors[k][b * batch_size + std::uint64_t(i)] = std::abs(value[k] - exact);
-                }
-            }
-        });
+                                        const TextureGrid& grid, std::uint64_t samples,
+                                        std::uint64_t seed) {
+    Reference reference = evaluate(mesh, shader, grid.voxel_size, samples, seed);
+    subtract_lookup(BrickPyramid(grid), reference);
+    const std::vector<std::vector<float>>& errors = reference.values;
 
     std::vector<ErrorFigures> result;
     std::size_t first = 0;

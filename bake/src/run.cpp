@@ -36,8 +36,7 @@ TextureGrid bake_at_size(const Job& job, const Options& options) {
     Progress progress(options.progress, "bake " + job.object->name, job.estimate.voxels);
     TextureGrid grid = bake_mesh(mesh, *job.shader, size, options.file.half,
                                  [&](std::uint64_t n) { progress.advance(n); });
-    grid.errors =
-        measure_error(mesh, *job.shader, BrickPyramid(grid), size, error_samples, options.seed);
+    grid.errors = measure_error(mesh, *job.shader, grid, error_samples, options.seed);
     progress.advance(job.estimate.voxels);  // the estimate may have been too high
     return grid;
 }

@@ -1,19 +1,14 @@
 #include "estara/bake/surface_band.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <tuple>
 
+#include "block_loops.h"
+#include "block_triangles.h"
 #include "estara/scenes/error.h"
-#include "triangle_box.h"
 
 namespace estara {
 
@@ -23,20 +18,6 @@ namespace {
 /// octant, where an OpenVDB tree is smallest, with room for the cells around it; and a flat side of
 /// it lies between two layers of voxels, not in one, where it would touch three.
 constexpr double margin = 8.5;
-
-/// Where a mesh lies on its grid of voxels.
-struct Lattice {
-    double voxel_size;
-    glm::dvec3 origin;
-    double slack;  ///< how much larger than one voxel a cell is taken, on each side, in voxels
-
-    std::array<glm::dvec3, 3> corners(const Mesh& mesh, std::size_t triangle) const {
-        const glm::uvec3& t = mesh.triangles[triangle];
-        std::array<glm::dvec3, 3> v;
-        for (int i = 0; i < 3; ++i) v[i] = (glm::dvec3(mesh.P[t[i]]) - origin) / voxel_size;
-        return v;
-    }
-};
 
 Lattice make_lattice(const Mesh& mesh, double voxel_size) {
     const Box box = bounds(mesh);
@@ -65,68 +46,54 @@ Lattice make_lattice(const Mesh& mesh, double voxel_size) {
     return {voxel_size, glm::dvec3(box.min) - margin * voxel_size, slack};
 }
 
-/// A triangle and a block that it may have voxels in.
-struct Entry {
-    glm::ivec3 block;  ///< voxel origin / 8
-    std::uint32_t triangle;
-    bool operator<(const Entry& o) const noexcept {
-        return std::tie(block.x, block.y, block.z, triangle) <
-               std::tie(o.block.x, o.block.y, o.block.z, o.triangle);
-    }
-};
-
-/// Lists the blocks in [lo, hi] that a triangle's cells may lie in, halving the range until one is
-/// left and leaving out what the triangle does not meet: a large triangle costs what its area is
-/// worth, not its bounding box.
-void list_blocks(const std::array<glm::dvec3, 3>& v, std::uint32_t triangle, double slack,
-                 const glm::ivec3& lo, const glm::ivec3& hi, std::vector<Entry>& out) {
-    const glm::ivec3 size = hi - lo + 1;
-    const int widest = std::max({size.x, size.y, size.z});
-    // Cells -1 ... 7 of a block touch its voxels.
-    const double edge = 8.0 * widest + 1.0 + 2.0 * slack;
-    const glm::dvec3 corner = 8.0 * glm::dvec3(lo) - 1.0 - slack;
-    if (!TriangleBox(v, edge).meets(corner)) return;
-    if (widest == 1) {
-        out.push_back({lo, triangle});
-        return;
-    }
-    const int axis = size.x == widest ? 0 : (size.y == widest ? 1 : 2);
-    glm::ivec3 middle_hi = hi, middle_lo = lo;
-    middle_hi[axis] = lo[axis] + widest / 2 - 1;
-    middle_lo[axis] = lo[axis] + widest / 2;
-    list_blocks(v, triangle, slack, lo, middle_hi, out);
-    list_blocks(v, triangle, slack, middle_lo, hi, out);
+Lattice lattice_of(const SurfaceBand& band) noexcept {
+    return {band.voxel_size, band.origin, band.slack};
 }
 
-std::vector<Entry> list_entries(const Mesh& mesh, const Lattice& lattice) {
-    tbb::enumerable_thread_specific<std::vector<Entry>> lists;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 256), [&](const auto& range) {
-            std::vector<Entry>& list = lists.local();
-            for (std::size_t t = range.begin(); t < range.end(); ++t) {
-                const auto v = lattice.corners(mesh, t);
-                const glm::dvec3 lo = glm::min(v[0], glm::min(v[1], v[2])) - lattice.slack - 1.0;
-                const glm::dvec3 hi = glm::max(v[0], glm::max(v[1], v[2])) + lattice.slack + 1.0;
-                list_blocks(v, std::uint32_t(t), lattice.slack, glm::ivec3(glm::floor(lo / 8.0)),
-                            glm::ivec3(glm::floor(hi / 8.0)), list);
-            }
-        });
-    std::vector<Entry> all;
-    for (std::vector<Entry>& list : lists) {
-        all.insert(all.end(), list.begin(), list.end());
-        std::vector<Entry>().swap(list);
+/// A block's own cells.
+BlockMask cells_of(const CellRows& rows) noexcept {
+    BlockMask mask;
+    for (std::size_t x = 0; x < 8; ++x) {
+        for (std::size_t y = 0; y < 8; ++y) {
+            const auto row = std::uint64_t((rows.rows[x + 1][y + 1] >> 1) & 0xffu);
+            mask.words[x] |= row << (8 * y);
+        }
     }
-    tbb::parallel_sort(all);
-    return all;
+    return mask;
 }
 
-struct Nearest {
-    double distance2 = std::numeric_limits<double>::infinity();  ///< voxels squared
-    double facing = -1.0;  ///< |cosine| between the triangle's normal and the way to the voxel
-    double side = 1.0;
-    std::uint32_t triangle = 0;
-    glm::vec2 barycentrics{0.0f};
-};
+/// The voxels of a block that are corners of a cell.
+BlockMask corners_of(const CellRows& rows) noexcept {
+    BlockMask mask;
+    for (std::size_t x = 0; x < 8; ++x) {
+        for (std::size_t y = 0; y < 8; ++y) {
+            mask.words[x] |= std::uint64_t(rows.corners(x, y)) << (8 * y);
+        }
+    }
+    return mask;
+}
+
+BlockInput input(const Mesh& mesh, const SurfaceBand& band, const Lattice& lattice,
+                 std::size_t block) noexcept {
+    const SurfaceBand::Near& near = band.near[block];
+    return {mesh, lattice, band.blocks[block].origin,
+            std::span(band.triangles).subspan(near.first, near.count)};
+}
+
+/// The nearest triangles of a block. 12 KiB that a thread keeps.
+const NearestTriangles& nearest_triangles(const BlockInput& in) noexcept {
+    thread_local NearestTriangles nearest;
+    nearest.clear();
+    find_nearest(in, nearest);
+    return nearest;
+}
+
+/// What was found for voxel `bit`, with the sign of the side.
+float signed_distance(const NearestTriangles& nearest, std::size_t bit,
+                      double voxel_size) noexcept {
+    const double side = 1.0 - 2.0 * double(nearest.height[bit] < 0.0);  // no branch: it is random
+    return float(side * std::sqrt(nearest.distance2[bit]) * voxel_size);
+}
 
 double ratio(double a, double b) noexcept { return b > 0.0 ? a / b : 0.0; }
 
@@ -155,177 +122,65 @@ glm::dvec2 nearest_on_triangle(const glm::dvec3& p, const std::array<glm::dvec3,
     return {ratio(vb, sum), ratio(vc, sum)};
 }
 
-/// Takes a triangle into account for the voxel at p. Of triangles equally near (they share the
-/// nearest edge or vertex) the one that faces the voxel most decides the side: the others may see
-/// it from behind although it is in front of the surface.
-void keep_nearest(Nearest& nearest, const glm::dvec3& p, const std::array<glm::dvec3, 3>& v,
-                  const glm::dvec3& unit_normal, std::uint32_t triangle) {
-    const glm::dvec2 b = nearest_on_triangle(p, v);
-    const glm::dvec3 way = p - ((1.0 - b.x - b.y) * v[0] + b.x * v[1] + b.y * v[2]);
-    const double distance2 = glm::dot(way, way);
-    const double tie = 1e-9;
-    if (distance2 > nearest.distance2 + tie) return;
-    const double height = glm::dot(unit_normal, way);
-    const double facing = std::abs(height) / std::sqrt(std::max(distance2, 1e-30));
-    if (distance2 < nearest.distance2 - tie || facing > nearest.facing) {
-        nearest = {distance2, facing, height < 0.0 ? -1.0 : 1.0, triangle, glm::vec2(b)};
-    }
-}
-
-/// A block under construction: 9^3 cells around it matter, cell -1 to 7 in each direction.
-struct BlockBuilder {
-    BlockMask active, cells;
-    std::array<Nearest, 512> nearest;
-
-    void add(const std::array<glm::dvec3, 3>& v, std::uint32_t triangle, const glm::ivec3& origin,
-             double slack) {
-        BlockMask touched;
-        const TriangleBox test(v, 1.0 + 2.0 * slack);
-        const glm::dvec3 base(origin);
-        const glm::ivec3 lo =
-            glm::max(glm::ivec3(glm::floor(test.min() - slack - base)), glm::ivec3(-1));
-        const glm::ivec3 hi =
-            glm::min(glm::ivec3(glm::floor(test.max() + slack - base)), glm::ivec3(7));
-        for (int x = lo.x; x <= hi.x; ++x) {
-            for (int y = lo.y; y <= hi.y; ++y) {
-                for (int z = lo.z; z <= hi.z; ++z) {
-                    if (!test.meets(base + glm::dvec3(x, y, z) - slack)) continue;
-                    if (x >= 0 && y >= 0 && z >= 0) cells.set(BlockMask::bit(x, y, z));
-                    touch_corners(x, y, z, touched);
-                }
-            }
-        }
-        const glm::dvec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
-        const double length = glm::length(normal);
-        const glm::dvec3 unit = length > 0.0 ? normal / length : glm::dvec3(0.0);
-        for_each_bit(touched, [&](int x, int y, int z) {
-            const int bit = BlockMask::bit(x, y, z);
-            const glm::dvec3 p = base + glm::dvec3(x, y, z);
-            keep_nearest(nearest[bit], p, v, unit, triangle);
-            active.set(bit);
-        });
-    }
-
-    /// The corners of a cell that are voxels of this block.
-    static void touch_corners(int x, int y, int z, BlockMask& touched) {
-        for (int i = std::max(x, 0); i <= std::min(x + 1, 7); ++i) {
-            for (int j = std::max(y, 0); j <= std::min(y + 1, 7); ++j) {
-                for (int k = std::max(z, 0); k <= std::min(z + 1, 7); ++k) {
-                    touched.set(BlockMask::bit(i, j, k));
-                }
-            }
-        }
-    }
-};
-
-/// What BlockBuilder leaves: the masks and the voxels' data in bit order.
-struct FinishedBlock {
-    BlockMask active, cells;
-    std::vector<Nearest> voxels;
-};
-
-FinishedBlock build_block(const Mesh& mesh, const Lattice& lattice, const Entry* first,
-                          const Entry* last) {
-    thread_local BlockBuilder builder;  // 24 KiB that every block needs anew
-    builder = BlockBuilder{};
-    for (const Entry* e = first; e != last; ++e) {
-        builder.add(lattice.corners(mesh, e->triangle), e->triangle, 8 * e->block, lattice.slack);
-    }
-    FinishedBlock block{builder.active, builder.cells, {}};
-    block.voxels.reserve(std::size_t(builder.active.count()));
-    for_each_bit(builder.active, [&](int x, int y, int z) {
-        block.voxels.push_back(builder.nearest[BlockMask::bit(x, y, z)]);
-    });
-    return block;
-}
-
 }  // namespace
 
 void check_voxel_size(const Mesh& mesh, double voxel_size) { make_lattice(mesh, voxel_size); }
 
 SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
     const Lattice lattice = make_lattice(mesh, voxel_size);
-    const std::vector<Entry> entries = list_entries(mesh, lattice);
+    BlockTriangles sorted = triangles_by_block(mesh, lattice);
 
-    std::vector<std::size_t> starts;  // of each block's entries
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        if (i == 0 || entries[i].block != entries[i - 1].block) starts.push_back(i);
-    }
-    const std::size_t count = starts.size();
-    starts.push_back(entries.size());
-
-    std::vector<FinishedBlock> finished(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        finished[i] =
-            build_block(mesh, lattice, &entries[starts[i]], entries.data() + starts[i + 1]);
+    const std::size_t count = sorted.blocks.size();
+    std::vector<BlockMask> active(count), cells(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
+        CellRows rows;
+        mark_cells({mesh, lattice, 8 * sorted.blocks[b],
+                    std::span(sorted.triangles)
+                        .subspan(sorted.first[b], sorted.first[b + 1] - sorted.first[b])},
+                   rows);
+        cells[b] = cells_of(rows);
+        active[b] = corners_of(rows);
     });
 
-    SurfaceBand band{voxel_size, lattice.origin, {}, {}, {}, {}, {}};
+    SurfaceBand band{voxel_size, lattice.origin, lattice.slack, {}, {}, {}, {}};
     std::uint64_t rows = 0;
-    std::vector<std::size_t> kept;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (finished[i].voxels.empty()) continue;  // the bounds met, the cells did not
-        kept.push_back(i);
-        band.blocks.push_back({8 * entries[starts[i]].block, finished[i].active, rows});
-        band.cells.push_back(finished[i].cells);
-        rows += finished[i].voxels.size();
+    for (std::size_t b = 0; b < count; ++b) {
+        if (!active[b].any()) continue;  // the block's bounds met, its cells did not
+        band.blocks.push_back({8 * sorted.blocks[b], active[b], rows});
+        band.cells.push_back(cells[b]);
+        band.near.push_back(
+            {sorted.first[b], std::uint32_t(sorted.first[b + 1] - sorted.first[b])});
+        rows += std::uint64_t(active[b].count());
     }
-    band.triangle.resize(rows);
-    band.barycentrics.resize(rows);
-    band.distance.resize(rows);
-    tbb::parallel_for(std::size_t{0}, kept.size(), [&](std::size_t b) {
-        std::uint64_t row = band.blocks[b].first;
-        for (const Nearest& n : finished[kept[b]].voxels) {
-            band.triangle[row] = n.triangle;
-            band.barycentrics[row] = n.barycentrics;
-            band.distance[row] = float(n.side * std::sqrt(n.distance2) * voxel_size);
-            ++row;
-        }
-        std::vector<Nearest>().swap(finished[kept[b]].voxels);
-    });
+    band.triangles = std::move(sorted.triangles);
     return band;
 }
 
-bool is_closed(const Mesh& mesh) {
-    // Vertices at the same position get the same number.
-    std::vector<std::uint32_t> order(mesh.P.size()), number(mesh.P.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::uint32_t i) {
-        return std::tie(mesh.P[i].x, mesh.P[i].y, mesh.P[i].z);
-    };
-    tbb::parallel_sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        number[order[i]] =
-            i > 0 && key(order[i]) == key(order[i - 1]) ? number[order[i - 1]] : std::uint32_t(i);
-    }
+void nearest_distances(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
+                       float* distances) noexcept {
+    const Lattice lattice = lattice_of(band);
+    const NearestTriangles& nearest = nearest_triangles(input(mesh, band, lattice, block));
+    for_each_bit(band.blocks[block].active, [&](int x, int y, int z) {
+        const auto bit = std::size_t(BlockMask::bit(x, y, z));
+        *distances++ = signed_distance(nearest, bit, band.voxel_size);
+    });
+}
 
-    struct Edge {
-        std::uint32_t low, high;
-        bool ascending;
-        bool operator<(const Edge& o) const noexcept {
-            return std::tie(low, high, ascending) < std::tie(o.low, o.high, o.ascending);
-        }
-    };
-    std::vector<Edge> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const glm::uvec3& t : mesh.triangles) {
-        const std::array<std::uint32_t, 3> c{number[t.x], number[t.y], number[t.z]};
-        if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
-        for (int e = 0; e < 3; ++e) {
-            const std::uint32_t a = c[e], b = c[(e + 1) % 3];
-            edges.push_back({std::min(a, b), std::max(a, b), a < b});
-        }
-    }
-    tbb::parallel_sort(edges.begin(), edges.end());
-    if (edges.empty() || edges.size() % 2 != 0) return false;
-    for (std::size_t i = 0; i < edges.size(); i += 2) {
-        const Edge &a = edges[i], &b = edges[i + 1];
-        const bool pair = a.low == b.low && a.high == b.high && a.ascending != b.ascending;
-        const bool third =
-            i + 2 < edges.size() && edges[i + 2].low == a.low && edges[i + 2].high == a.high;
-        if (!pair || third) return false;
-    }
-    return true;
+void nearest_points(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
+                    NearestPoints& points) noexcept {
+    const Lattice lattice = lattice_of(band);
+    const NearestTriangles& nearest = nearest_triangles(input(mesh, band, lattice, block));
+    std::size_t i = 0;
+    for_each_bit(band.blocks[block].active, [&](int x, int y, int z) {
+        const auto bit = std::size_t(BlockMask::bit(x, y, z));
+        const auto triangle = std::uint32_t(nearest.triangle[bit]);
+        const glm::dvec3 voxel(band.blocks[block].origin + glm::ivec3(x, y, z));
+        points.distance[i] = signed_distance(nearest, bit, band.voxel_size);
+        points.triangle[i] = triangle;
+        points.barycentrics[i] =
+            glm::vec2(nearest_on_triangle(voxel, lattice.corners(mesh, triangle)));
+        ++i;
+    });
 }
 
 }  // namespace estara

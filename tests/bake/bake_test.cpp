@@ -8,6 +8,8 @@
 #include <cstring>
 #include <random>
 
+#include "estara/bake/surface_band.h"
+#include "estara/grids/bricks.h"
 #include "estara/scenes/error.h"
 #include "estara/scenes/load.h"
 #include "estara/scenes/program.h"
@@ -60,6 +62,23 @@ TEST(Bake, HoldsTheShadersOwnValueAtEachVoxel) {
     }
 }
 
+TEST(Bake, HoldsTheDistanceOfEachVoxel) {
+    const Mesh mesh = test::sphere(30, 1.0f);
+    const SurfaceBand band = surface_band(mesh, 0.05);
+    const TextureGrid solid = bake_mesh(mesh, *bound("plastic"), 0.05, false);
+    const TextureGrid on_surface =
+        bake_mesh(mesh, *bound("cobblestone", {{"variant", {0.0f}}}, true), 0.05, false);
+    for (std::size_t b = 0; b < band.blocks.size(); ++b) {
+        NearestPoints points;
+        nearest_points(mesh, band, b, points);
+        for (int i = 0; i < band.blocks[b].active.count(); ++i) {
+            const std::size_t row = band.blocks[b].first + std::size_t(i);
+            ASSERT_EQ(solid.distance[row], points.distance[std::size_t(i)]);
+            ASSERT_EQ(on_surface.distance[row], points.distance[std::size_t(i)]);
+        }
+    }
+}
+
 TEST(Bake, FindsAVoxelForEverySurfacePointOnEveryLevel) {
     for (const Mesh& mesh :
          {test::sphere(40, 1.0f), test::joined(test::square(1.0f), test::square(1.0f, 0.002f))}) {
@@ -105,7 +124,7 @@ TEST(Bake, IsTheSameWithOneThreadAndFour) {
     const auto bake_with = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         TextureGrid grid = bake_mesh(mesh, *shader, 0.03, true);
-        grid.errors = measure_error(mesh, *shader, BrickPyramid(grid), 0.03, 5000, 1);
+        grid.errors = measure_error(mesh, *shader, grid, 5000, 1);
         return grid;
     };
     const TextureGrid one = bake_with(1), four = bake_with(4);
@@ -121,7 +140,7 @@ TEST(Bake, OnTextureCoordinatesTakesTheNearestSurfacePoint) {
     const BoundShaderPtr shader = bound("cobblestone", {{"variant", {0.0f}}}, true);
     ASSERT_EQ(shader->domain(), Domain::surface);
     const TextureGrid grid = bake_mesh(mesh, *shader, 0.004, false);
-    const auto errors = measure_error(mesh, *shader, BrickPyramid(grid), 0.004, 50000, 1);
+    const auto errors = measure_error(mesh, *shader, grid, 50000, 1);
     EXPECT_LT(errors[0].rmse, 0.02);  // mortar edges are .04 of a cell of .3 wide: 3 voxels
     EXPECT_LT(errors[0].p99, 0.1);
 }
@@ -131,8 +150,7 @@ TEST(Bake, ErrorShrinksWithTheSquareOfTheVoxelWhereTheShaderIsSmooth) {
     const BoundShaderPtr shader =
         bound("wood", {{"ringscale", {0.5f}}});  // rings wider than the sphere
     const auto rmse = [&](double size) {
-        return measure_error(mesh, *shader, BrickPyramid(bake_mesh(mesh, *shader, size, false)),
-                             size, 40000, 1)[0]
+        return measure_error(mesh, *shader, bake_mesh(mesh, *shader, size, false), 40000, 1)[0]
             .rmse;
     };
     const double coarse = rmse(0.04), fine = rmse(0.01);
@@ -144,15 +162,15 @@ TEST(Bake, ErrorFiguresAreInOrderAndIncludeHalfRounding) {
     const Mesh mesh = test::sphere(30, 1.0f);
     const BoundShaderPtr plain = bound("plastic", {{"Cs", {0.3f, 0.123456f, 0.777f}}});
     TextureGrid grid = bake_mesh(mesh, *plain, 0.1, false);
-    EXPECT_LT(measure_error(mesh, *plain, BrickPyramid(grid), 0.1, 1000, 1)[0].max, 1e-6);
+    EXPECT_LT(measure_error(mesh, *plain, grid, 1000, 1)[0].max, 1e-6);
     grid = bake_mesh(mesh, *plain, 0.1, true);
-    const ErrorFigures half = measure_error(mesh, *plain, BrickPyramid(grid), 0.1, 1000, 1)[0];
+    const ErrorFigures half = measure_error(mesh, *plain, grid, 1000, 1)[0];
     EXPECT_GT(half.max, 1e-6);
     EXPECT_LT(half.max, 0x1p-12);
 
     const BoundShaderPtr marble = bound("greenmarble");
     grid = bake_mesh(mesh, *marble, 0.05, false);
-    const ErrorFigures e = measure_error(mesh, *marble, BrickPyramid(grid), 0.05, 20000, 1)[0];
+    const ErrorFigures e = measure_error(mesh, *marble, grid, 20000, 1)[0];
     EXPECT_EQ(e.samples, 20000u);
     EXPECT_GT(e.mean, 0.0);
     EXPECT_LT(e.mean, e.rmse);
@@ -160,8 +178,7 @@ TEST(Bake, ErrorFiguresAreInOrderAndIncludeHalfRounding) {
     EXPECT_LT(e.p99, e.p999);
     EXPECT_LE(e.p999, e.max);
     // Other points, same error: the sample is large enough to be believed.
-    EXPECT_NEAR(measure_error(mesh, *marble, BrickPyramid(grid), 0.05, 20000, 2)[0].rmse, e.rmse,
-                0.1 * e.rmse);
+    EXPECT_NEAR(measure_error(mesh, *marble, grid, 20000, 2)[0].rmse, e.rmse, 0.1 * e.rmse);
 }
 
 TEST(Bake, KeepsTheErrorItIsAskedFor) {
@@ -171,8 +188,8 @@ TEST(Bake, KeepsTheErrorItIsAskedFor) {
     for (const ErrorFigures& e : baked.grid.errors) EXPECT_LE(e.rmse, 0.003);
     // Not much finer than needed: a voxel a third larger breaks the bound.
     const double coarser = 1.34 * baked.grid.voxel_size;
-    const auto errors = measure_error(
-        mesh, *shader, BrickPyramid(bake_mesh(mesh, *shader, coarser, false)), coarser, 100000, 1);
+    const auto errors =
+        measure_error(mesh, *shader, bake_mesh(mesh, *shader, coarser, false), 100000, 1);
     EXPECT_GT(std::max(errors[0].rmse, errors[1].rmse), 0.003);
 }
 
@@ -207,7 +224,7 @@ TEST(Bake, HoldsOnRealMeshes) {
         const BoundShaderPtr shader =
             bound("wood", {{"ringscale", {float(0.02 / size)}}});  // a ring every 50 voxels
         const TextureGrid grid = bake_mesh(mesh, *shader, size, false);
-        const auto errors = measure_error(mesh, *shader, BrickPyramid(grid), size, 50000, 1);
+        const auto errors = measure_error(mesh, *shader, grid, 50000, 1);
         EXPECT_LT(errors[0].rmse, 0.004) << name;
         EXPECT_LT(errors[0].max, 0.26)
             << name;  // lightwood - darkwood: no lookup misses its voxels

@@ -5,7 +5,6 @@
 #include <functional>
 #include <vector>
 
-#include "estara/grids/bricks.h"
 #include "estara/grids/texture_grid.h"
 #include "estara/scenes/mesh.h"
 #include "estara/shaders/registry.h"
@@ -37,13 +36,12 @@ TextureGrid bake_mesh(const Mesh& mesh, const BoundShader& shader, double voxel_
                       const VoxelsDone& done = {});
 
 /// |lookup(p) - shader(p)| at surface points that the bake never saw, through the lookup that
-/// rendering uses, on level 0; linear colour. The points are random, uniform by area. Parallel; the
-/// same figures for any number of threads.
-/// @param filter_width  of the reference: the voxel size
-/// @return              by channel; mean and RMSE over points and components
+/// rendering uses, on level 0; linear colour. The points are random, uniform by area; the filter
+/// width is the voxel size, as in the bake. Parallel; the same figures for any number of threads.
+/// @return  by channel; mean and RMSE over points and components
 std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& shader,
-                                        const BrickPyramid& pyramid, double filter_width,
-                                        std::uint64_t samples, std::uint64_t seed);
+                                        const TextureGrid& grid, std::uint64_t samples,
+                                        std::uint64_t seed);
 
 /// How many surface points an error is measured at: p99.9 then rests on 262 of them.
 inline constexpr std::uint64_t error_samples = std::uint64_t{1} << 18;
