@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estara/shaders/wide.h"
 #include "triangle_boxes.h"
 #include "triangle_planes.h"
 
@@ -128,58 +129,16 @@ ESTARA_KERNEL void nearest_loop(const BlockInput& in, NearestTriangles& nearest)
     }
 }
 
-// Functions with a target of their own, for the reasons that shaders/src/bake_all.h gives.
-using MarkLoop = void (*)(const BlockInput&, CellRows&) noexcept;
-using NearestLoop = void (*)(const BlockInput&, NearestTriangles&) noexcept;
-
-[[gnu::flatten]] void mark_baseline(const BlockInput& in, CellRows& cells) noexcept {
-    mark_loop(in, cells);
-}
-[[gnu::flatten]] void nearest_baseline(const BlockInput& in, NearestTriangles& nearest) noexcept {
-    nearest_loop(in, nearest);
-}
-
-#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__clang__)
-#define ESTARA_DISPATCH 1
-[[gnu::flatten, gnu::target("arch=x86-64-v3")]] void mark_avx2(const BlockInput& in,
-                                                               CellRows& cells) noexcept {
-    mark_loop(in, cells);
-}
-[[gnu::flatten, gnu::target("arch=x86-64-v3")]] void nearest_avx2(
-    const BlockInput& in, NearestTriangles& nearest) noexcept {
-    nearest_loop(in, nearest);
-}
-[[gnu::flatten, gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] void nearest_avx512(
-    const BlockInput& in, NearestTriangles& nearest) noexcept {
-    nearest_loop(in, nearest);
-}
-#endif
-
-MarkLoop widest_mark_loop([[maybe_unused]] InstructionSet limit) noexcept {
-#ifdef ESTARA_DISPATCH
-    if (limit >= InstructionSet::avx2 && __builtin_cpu_supports("x86-64-v3")) return mark_avx2;
-#endif
-    return mark_baseline;
-}
-
-NearestLoop widest_nearest_loop([[maybe_unused]] InstructionSet limit) noexcept {
-#ifdef ESTARA_DISPATCH
-    if (limit >= InstructionSet::avx512 && __builtin_cpu_supports("x86-64-v4")) {
-        return nearest_avx512;
-    }
-    if (limit >= InstructionSet::avx2 && __builtin_cpu_supports("x86-64-v3")) return nearest_avx2;
-#endif
-    return nearest_baseline;
-}
-
 }  // namespace
 
 void mark_cells(const BlockInput& in, CellRows& cells, InstructionSet limit) noexcept {
-    widest_mark_loop(limit)(in, cells);
+    // Wider gains nothing (measured): a row has nine cells.
+    const InstructionSet widest = limit < InstructionSet::avx2 ? limit : InstructionSet::avx2;
+    wide([&in, &cells]() ESTARA_LOOP { mark_loop(in, cells); }, widest);
 }
 
 void find_nearest(const BlockInput& in, NearestTriangles& nearest, InstructionSet limit) noexcept {
-    widest_nearest_loop(limit)(in, nearest);
+    wide([&in, &nearest]() ESTARA_LOOP { nearest_loop(in, nearest); }, limit);
 }
 
 }  // namespace estara

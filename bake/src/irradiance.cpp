@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "error_figures.h"
+#include "estara/bake/bake.h"
 #include "estara/bake/surface_band.h"
 #include "estara/grids/bricks.h"
 #include "estara/grids/irradiance.h"
@@ -20,7 +21,8 @@ namespace estara {
 namespace {
 
 constexpr double most_masked = 0.05;  // share of the surface; more: smaller voxels
-constexpr int floats = 4;             // irradiance and mask
+constexpr const char* masked_param = "masked";
+constexpr int floats = 4;  // irradiance and mask
 constexpr std::size_t batch = RayBatch::capacity;
 
 /// Bytes of a bake's memory for each voxel of its finest level: planes and levels, distance-free,
@@ -30,17 +32,9 @@ constexpr double bytes_per_voxel = 60.0;
 int only_instance(const Scene& scene, int object) {
     const std::vector<int> instances = instances_of(scene, object);
     if (instances.size() != 1) {
-        throw Error(fmt::format(
-            "it stands in the scene {} times, and light differs from place to place; leave "
-            "--irradiance out for it",
-            instances.size()));
-    }
-    const std::string moving = moving_node(scene);
-    if (!moving.empty()) {
-        throw Error(fmt::format(
-            "\"{}\" moves, so that light changes; --irradiance needs lights and objects that stand "
-            "still",
-            moving));
+        throw Error(
+            fmt::format("it stands in the scene {} times, and light differs from place to place",
+                        instances.size()));
     }
     return instances.front();
 }
@@ -66,7 +60,7 @@ public:
         fill(voxel_size);
         const double masked = mask(voxel_size);
         m_result.params = {{"max_error", {float(m_settings.max_error)}},
-                           {"masked", {float(masked)}}};
+                           {masked_param, {float(masked)}}};
         return masked;
     }
 
@@ -160,8 +154,8 @@ private:
     double mask(double voxel_size) {
         GridLevel& level = m_result.levels.front();
         // An active voxel stands for about a third of a voxel's square of surface.
-        const std::uint64_t samples = std::clamp<std::uint64_t>(3 * level.voxels(), 1u << 16,
-                                                                std::uint64_t{1} << 30);
+        const std::uint64_t samples =
+            std::clamp<std::uint64_t>(3 * level.voxels(), 1u << 16, std::uint64_t{1} << 30);
         std::vector<std::vector<glm::vec3>> bad((samples + batch - 1) / batch);
         compare(samples, 2 * m_settings.seed,
                 [&](std::uint64_t first, const std::vector<MeshPoint>& points,
@@ -175,11 +169,9 @@ private:
         std::uint64_t count = 0;
         for (const std::vector<glm::vec3>& some : bad) {
             for (const glm::vec3& P : some) {
-                const glm::ivec3 cell(
-                    glm::floor((glm::dvec3(P) - m_result.origin) / voxel_size));
+                const glm::ivec3 cell(glm::floor((glm::dvec3(P) - m_result.origin) / voxel_size));
                 for (int corner = 0; corner < 8; ++corner) {
-                    set_mask(level,
-                             cell + glm::ivec3(corner >> 2, (corner >> 1) & 1, corner & 1));
+                    set_mask(level, cell + glm::ivec3(corner >> 2, (corner >> 1) & 1, corner & 1));
                 }
             }
             count += some.size();
@@ -189,12 +181,12 @@ private:
 
     static void set_mask(GridLevel& level, const glm::ivec3& voxel) {
         const glm::ivec3 origin = voxel & ~7, local = voxel & 7;
-        const auto found = std::lower_bound(
-            level.blocks.begin(), level.blocks.end(), origin,
-            [](const Block& block, const glm::ivec3& o) {
-                return std::tie(block.origin.x, block.origin.y, block.origin.z) <
-                       std::tie(o.x, o.y, o.z);
-            });
+        const auto found =
+            std::lower_bound(level.blocks.begin(), level.blocks.end(), origin,
+                             [](const Block& block, const glm::ivec3& o) {
+                                 return std::tie(block.origin.x, block.origin.y, block.origin.z) <
+                                        std::tie(o.x, o.y, o.z);
+                             });
         if (found == level.blocks.end() || found->origin != origin) return;
         const int bit = BlockMask::bit(local.x, local.y, local.z);
         if (!found->active.test(bit)) return;
@@ -218,7 +210,7 @@ private:
         std::erase(errors, -1.0f);
         if (errors.empty()) return {};
         const std::uint64_t samples = errors.size() / 3;
-        return {figures(errors, samples), ErrorFigures{}};
+        return {error_figures(errors, samples), ErrorFigures{}};
     }
 
     const Mesh& m_mesh;
@@ -228,6 +220,13 @@ private:
 };
 
 }  // namespace
+
+double masked_share(const TextureGrid& grid) {
+    for (const auto& [name, value] : grid.params) {
+        if (name == masked_param) return value.front();
+    }
+    return 0.0;
+}
 
 TextureGrid bake_irradiance(const Scene& scene, const RayScene& rays, int object,
                             const IrradianceSettings& settings) {

@@ -4,68 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 #include <span>
 #include <vector>
 
+#include "error_figures.h"
 #include "estara/bake/bake.h"
 #include "estara/grids/bricks.h"
+#include "surface_sampler.h"
 
 namespace estara {
 
 namespace {
-
-/// Points on a mesh, uniform by area.
-class SurfaceSampler {
-public:
-    explicit SurfaceSampler(const Mesh& mesh) : m_mesh(mesh), m_area(mesh.triangles.size()) {
-        double sum = 0.0;
-        for (std::size_t t = 0; t < m_area.size(); ++t) {
-            const glm::uvec3& c = mesh.triangles[t];
-            const glm::dvec3 a(mesh.P[c.x]);
-            sum += 0.5 * glm::length(
-                             glm::cross(glm::dvec3(mesh.P[c.y]) - a, glm::dvec3(mesh.P[c.z]) - a));
-            m_area[t] = sum;
-        }
-    }
-
-    /// @param u  three numbers in [0, 1)
-    MeshPoint at(const glm::dvec3& u) const {
-        const auto found = std::upper_bound(m_area.begin(), m_area.end(), u.x * m_area.back());
-        const auto triangle =
-            std::min<std::size_t>(std::size_t(found - m_area.begin()), m_area.size() - 1);
-        const double root = std::sqrt(u.y);  // Turk 1990, "Generating Random Points in Triangles"
-        return mesh_point(m_mesh, std::uint32_t(triangle), float(root * (1.0 - u.z)),
-                          float(root * u.z));
-    }
-
-private:
-    const Mesh& m_mesh;
-    std::vector<double> m_area;  ///< of the triangles up to and with this one
-};
-
-ErrorFigures figures(std::vector<float>& errors, std::uint64_t samples) {
-    ErrorFigures f;
-    double sum = 0.0, squares = 0.0;
-    for (const float e : errors) {
-        sum += e;
-        squares += double(e) * e;
-    }
-    f.mean = sum / double(errors.size());
-    f.rmse = std::sqrt(squares / double(errors.size()));
-    // The values below which a fraction lies; each search leaves the larger ones behind it.
-    const auto quantile = [&](double fraction) {
-        return errors.begin() + std::ptrdiff_t(fraction * double(errors.size() - 1));
-    };
-    const auto p99 = quantile(0.99), p999 = quantile(0.999);
-    std::nth_element(errors.begin(), p99, errors.end());
-    f.p99 = *p99;
-    std::nth_element(p99, p999, errors.end());
-    f.p999 = *p999;
-    f.max = *std::max_element(p999, errors.end());
-    f.samples = samples;
-    return f;
-}
 
 constexpr std::size_t batch_size = SurfaceBatch::capacity;
 
@@ -83,18 +32,16 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
     reference.values.assign(floats, std::vector<float>(samples));
     const bool needs_tangent = shader.domain() == Domain::surface;
     tbb::parallel_for(std::size_t{0}, (samples + batch_size - 1) / batch_size, [&](std::size_t b) {
-        // A generator for each batch: the points do not depend on who works on which batch.
-        std::mt19937_64 random(seed * 0x9e3779b97f4a7c15u + b);
-        std::uniform_real_distribution<double> uniform;
         thread_local SurfaceBatch batch;
+        thread_local std::vector<MeshPoint> points;
         thread_local std::vector<float> planes;
         planes.resize(floats * batch_size);
         const std::size_t first = b * batch_size;
-        batch.size = int(std::min(batch_size, samples - first));
+        sampler.points(seed, b, std::min(batch_size, samples - first), points);
+        batch.size = int(points.size());
         batch.filter_width = float(filter_width);
         for (int i = 0; i < batch.size; ++i) {
-            const double x = uniform(random), y = uniform(random), z = uniform(random);
-            const MeshPoint m = sampler.at({x, y, z});
+            const MeshPoint& m = points[std::size_t(i)];
             batch.set(i, m.P, m.N, m.uv, needs_tangent ? tangent(mesh, m) : glm::vec3(1, 0, 0));
             reference.P[first + std::size_t(i)] = m.P;
         }
@@ -132,7 +79,7 @@ std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& sha
                                         const TextureGrid& grid, std::uint64_t samples,
                                         std::uint64_t seed) {
     Reference reference = evaluate(mesh, shader, grid.voxel_size, samples, seed);
-    subtract_lookup(BrickPyramid(grid), reference);
+    subtract_lookup(BrickPyramid::around(grid, reference.P), reference);
     const std::vector<std::vector<float>>& errors = reference.values;
 
     std::vector<ErrorFigures> result;
@@ -143,7 +90,7 @@ std::vector<ErrorFigures> measure_error(const Mesh& mesh, const BoundShader& sha
             all.insert(all.end(), errors[first + std::size_t(c)].begin(),
                        errors[first + std::size_t(c)].end());
         }
-        result.push_back(figures(all, samples));
+        result.push_back(error_figures(all, samples));
         first += std::size_t(channel.components);
     }
     return result;

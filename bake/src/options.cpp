@@ -19,8 +19,7 @@ struct Words {
     std::vector<std::string> params;
     std::string frames, resolution, max_memory;
     std::string compression = "zip", progress = "auto";
-    double voxel_size = 0.0, max_error = 0.0;
-    bool irradiance = false;
+    double voxel_size = 0.0, max_error = 0.0, irradiance_voxel_size = 0.0;
     std::int64_t seed = 0;  // signed: "-1" would become a large number
 };
 
@@ -55,6 +54,17 @@ void check(const Options& options) {
     if (options.max_error && !(*options.max_error > 0.0 && std::isfinite(*options.max_error))) {
         throw Error(fmt::format("--max-error {}: must be above 0", *options.max_error));
     }
+    if (!(options.irradiance_error > 0.0) || !std::isfinite(options.irradiance_error)) {
+        throw Error(
+            fmt::format("--irradiance-error {}: must be above 0", options.irradiance_error));
+    }
+    const std::optional<double>& light = options.irradiance_voxel_size;
+    if (light && !(*light > 0.0 && std::isfinite(*light))) {
+        throw Error(fmt::format("--irradiance-voxel-size {}: must be above 0", *light));
+    }
+    if (light && !options.irradiance) {
+        throw Error("--irradiance-voxel-size is of --irradiance, which is not given");
+    }
     refuse_same_file(
         {{"SCENE", options.scene}, {"-o", options.output}, {"--stats", options.stats}});
     if (!(options.fps > 0.0) || !std::isfinite(options.fps)) {
@@ -79,7 +89,9 @@ void interpret(const CLI::App& app, const Words& words, Options& options) {
     options.progress = parse_progress(words.progress);
     if (words.seed < 0) throw Error(fmt::format("--seed {}: must be 0 or above", words.seed));
     options.seed = std::uint64_t(words.seed);
-    if (words.irradiance) throw Error("--irradiance is not built yet: this version bakes colour");
+    if (app.count("--irradiance-voxel-size") > 0) {
+        options.irradiance_voxel_size = words.irradiance_voxel_size;
+    }
     check(options);
 }
 
@@ -133,6 +145,22 @@ void add_resolution(CLI::App& app, Options& options, Words& words) {
         ->group("Resolution");
 }
 
+void add_light(CLI::App& app, Options& options, Words& words) {
+    app.add_flag("--irradiance", options.irradiance,
+                 "bake the light of lights that stand still too, shadows included")
+        ->group("Light");
+    app.add_option("--irradiance-error", options.irradiance_error,
+                   "where a lookup of the light is off by more, rays are traced instead")
+        ->type_name("E")
+        ->capture_default_str()
+        ->group("Light");
+    app.add_option("--irradiance-voxel-size", words.irradiance_voxel_size,
+                   "edge of its voxels, object space (default: halved until a twentieth of the "
+                   "surface is left to rays)")
+        ->type_name("H")
+        ->group("Light");
+}
+
 void add_file(CLI::App& app, Options& options, Words& words) {
     app.add_option("-o,--output", options.output, "file to write")
         ->type_name("FILE.vdb")
@@ -150,7 +178,6 @@ void add_file(CLI::App& app, Options& options, Words& words) {
 }
 
 void add_work(CLI::App& app, Options& options, Words& words) {
-    app.add_flag("--irradiance", words.irradiance)->group("");  // named by the design, to come
     app.add_flag("--dry-run", options.dry_run, "only say what the bake would cost")->group("Work");
     app.add_option("--max-memory", words.max_memory,
                    "limit, as 2G or 512M (default: half of the machine's)")
@@ -183,6 +210,7 @@ Options parse_options(int argc, const char* const* argv, std::string& help) {
     app.footer(examples);
     add_what(app, options, words);
     add_resolution(app, options, words);
+    add_light(app, options, words);
     add_file(app, options, words);
     add_work(app, options, words);
     help = parse_command_line(app, argc, argv);

@@ -7,10 +7,13 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "describe.h"
 #include "estara/bake/bake.h"
+#include "estara/bake/irradiance.h"
 #include "estara/scenes/load.h"
+#include "estara/scenes/static_light.h"
 #include "plan.h"
 
 namespace estara::bake {
@@ -19,6 +22,7 @@ namespace {
 /// A finished bake and what it took.
 struct Done {
     TextureGrid grid;
+    std::optional<TextureGrid> light;
     double seconds = 0.0;
     int attempts = 1;
     std::uint64_t bytes = 0;  ///< estimated
@@ -55,6 +59,31 @@ BoundedBake bake_within_error(const Job& job, const Options& options, std::uint6
                          max_memory, options.seed, begin);
 }
 
+/// The scene's light on a job's object, or nothing if it stands in the scene more than once.
+std::optional<TextureGrid> bake_light(const Job& job, const TextureGrid& color, const Scene& scene,
+                                      const RayScene& rays, const Options& options,
+                                      std::uint64_t max_memory, const Output& output) {
+    const int object = int(job.object - scene.objects.data());
+    const std::size_t places = instances_of(scene, object).size();
+    if (places != 1) {
+        output.message(
+            fmt::format("warning: object \"{}\" stands in the scene {} times, and light differs "
+                        "from place to place: it is baked without",
+                        job.object->name, places));
+        return std::nullopt;
+    }
+    IrradianceSettings settings;
+    settings.max_error = options.irradiance_error;
+    settings.voxel_size = options.irradiance_voxel_size;
+    settings.finest = color.voxel_size;
+    settings.max_bytes = max_memory;
+    settings.half = options.file.half;
+    settings.seed = options.seed;
+    TextureGrid light = bake_irradiance(scene, rays, object, settings);
+    light.object = job.object->name;
+    return light;
+}
+
 Done bake_job(const Job& job, const Options& options, std::uint64_t max_memory) {
     const Stopwatch watch;
     Done done;
@@ -72,6 +101,19 @@ Done bake_job(const Job& job, const Options& options, std::uint64_t max_memory) 
     return done;
 }
 
+std::string describe_light(const TextureGrid& light) {
+    std::string text =
+        fmt::format("\n    irradiance: {} voxels of {:.4g} on {} levels, {:.2g} % left to rays",
+                    light.levels.front().voxels(), light.voxel_size, light.levels.size(),
+                    100.0 * masked_share(light));
+    if (light.errors.empty()) return text;
+    const ErrorFigures& e = light.errors.front();
+    return text + fmt::format(
+                      "\n    {:<9} error: rmse {:.5f}  mean {:.5f}  p99 {:.5f}  p99.9 {:.5f}  "
+                      "max {:.5f}  ({} points outside)",
+                      "light", e.rmse, e.mean, e.p99, e.p999, e.max, e.samples);
+}
+
 std::string describe_bake(const Done& done) {
     const TextureGrid& grid = done.grid;
     std::string text =
@@ -85,25 +127,39 @@ std::string describe_bake(const Done& done) {
             "({} points)",
             grid.channels[c].name, e.rmse, e.mean, e.p99, e.p999, e.max, e.samples);
     }
+    if (done.light) text += describe_light(*done.light);
     return text;
+}
+
+nlohmann::json as_json(const ErrorFigures& e) {
+    return {{"mean", e.mean}, {"rmse", e.rmse}, {"p99", e.p99},
+            {"p999", e.p999}, {"max", e.max},   {"samples", e.samples}};
+}
+
+nlohmann::json levels_of(const TextureGrid& grid) {
+    nlohmann::json levels = nlohmann::json::array();
+    for (const GridLevel& level : grid.levels) levels.push_back(level.voxels());
+    return levels;
 }
 
 nlohmann::json as_json(const Done& done) {
     const TextureGrid& grid = done.grid;
-    nlohmann::json errors, params, levels = nlohmann::json::array();
+    nlohmann::json errors, params, light;
     for (std::size_t c = 0; c < grid.channels.size(); ++c) {
-        const ErrorFigures& e = grid.errors[c];
-        errors[grid.channels[c].name] = {{"mean", e.mean}, {"rmse", e.rmse},
-                                         {"p99", e.p99},   {"p999", e.p999},
-                                         {"max", e.max},   {"samples", e.samples}};
+        errors[grid.channels[c].name] = as_json(grid.errors[c]);
+    }
+    if (done.light) {
+        light = {{"voxels", levels_of(*done.light)},
+                 {"voxel_size", done.light->voxel_size},
+                 {"masked", masked_share(*done.light)}};
+        if (!done.light->errors.empty()) light["error"] = as_json(done.light->errors.front());
     }
     for (const auto& [name, value] : grid.params) {
         params[name] = value.size() == 1 ? nlohmann::json(value.front()) : nlohmann::json(value);
     }
-    for (const GridLevel& level : grid.levels) levels.push_back(level.voxels());
-    return {{"object", grid.object},   {"shader", grid.shader},         {"params", params},
-            {"voxels", levels},        {"voxel_size", grid.voxel_size}, {"errors", errors},
-            {"seconds", done.seconds}, {"attempts", done.attempts}};
+    return {{"object", grid.object},     {"shader", grid.shader},   {"params", params},
+            {"voxels", levels_of(grid)}, {"irradiance", light},     {"voxel_size", grid.voxel_size},
+            {"errors", errors},          {"seconds", done.seconds}, {"attempts", done.attempts}};
 }
 
 void write_stats(const Options& options, const std::vector<Done>& bakes, std::uint64_t bytes,
@@ -159,25 +215,51 @@ void check_writable(const Options& options) {
     const PendingFile probe(options.output);
 }
 
-void bake_all_jobs(const std::vector<Job>& jobs, const Options& options, const Output& output) {
+void bake_all_jobs(const std::vector<Job>& jobs, const Scene& scene, const Options& options,
+                   const Output& output) {
     const Stopwatch watch;
     std::vector<Done> bakes;
     std::uint64_t held = 0;  // by the grids that are done
+    const auto left = [&] { return options.max_memory > held ? options.max_memory - held : 0; };
+    std::unique_ptr<RayScene> rays;
+    if (options.irradiance) rays = std::make_unique<RayScene>(scene);
     for (const Job& job : jobs) {
-        const std::uint64_t left = options.max_memory > held ? options.max_memory - held : 0;
-        bakes.push_back(naming(job, [&] { return bake_job(job, options, left); }));
+        bakes.push_back(naming(job, [&] { return bake_job(job, options, left()); }));
         held += bakes.back().bytes;
+        if (rays) {
+            const Stopwatch light;
+            bakes.back().light = naming(job, [&] {
+                return bake_light(job, bakes.back().grid, scene, *rays, options, left(), output);
+            });
+            bakes.back().seconds += light.seconds();
+        }
         output.result(describe_bake(bakes.back()));
     }
     std::vector<TextureGrid> grids;
-    for (Done& done : bakes) grids.push_back(std::move(done.grid));
+    for (Done& done : bakes) {
+        grids.push_back(std::move(done.grid));
+        if (done.light) grids.push_back(std::move(*done.light));
+    }
     const std::uint64_t bytes = write_file(options, grids);
-    for (std::size_t i = 0; i < bakes.size(); ++i) bakes[i].grid = std::move(grids[i]);
+    std::size_t written = 0;
+    for (Done& done : bakes) {
+        done.grid = std::move(grids[written++]);
+        if (done.light) done.light = std::move(grids[written++]);
+    }
     if (!options.stats.empty()) write_stats(options, bakes, bytes, watch.seconds());
     output.result(
         fmt::format("{}: {} in {}, {}", options.output, format_bytes(bytes),
                     bakes.size() == 1 ? "1 object" : fmt::format("{} objects", bakes.size()),
                     format_seconds(watch.seconds())));
+}
+
+void check_light(const Scene& scene) {
+    const std::string moving = moving_node(scene);
+    if (moving.empty()) return;
+    throw Error(fmt::format(
+        "{}: \"{}\" moves, so that light changes; --irradiance needs lights and objects that stand "
+        "still",
+        scene.path, moving));
 }
 
 }  // namespace
@@ -200,9 +282,10 @@ void run(const Options& options, const Output& output) {
     check_shader(options.shader);
     const Scene scene = load_scene(options.scene);
     for (const std::string& warning : scene.warnings) output.message("warning: " + warning);
+    if (options.irradiance) check_light(scene);
     if (!options.dry_run) check_writable(options);
     const std::vector<Job> jobs = plan(scene, options, output.message);
-    if (!options.dry_run) return bake_all_jobs(jobs, options, output);
+    if (!options.dry_run) return bake_all_jobs(jobs, scene, options, output);
     for (const Job& job : jobs) output.result(naming(job, [&] { return dry_run(job, options); }));
 }
 

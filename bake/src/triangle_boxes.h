@@ -73,7 +73,7 @@ public:
             m_n.x * (start - v[0].x) + m_n.y * (start - v[0].y) + m_n.z * (start - v[0].z);
         m_far = offset + far;
         m_near = offset + near;
-        m_inverse = 1.0 / m_n.z;
+        m_inverse = 1.0 / (m_n.z + 0.0);  // -0.0 becomes 0.0, as in Edge
 
         const glm::dvec3 winding = glm::cross(edge[0], edge[1]);
         for (int e = 0; e < 3; ++e) {

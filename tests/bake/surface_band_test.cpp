@@ -120,6 +120,29 @@ TEST(SurfaceBand, OfAnAxisAlignedSquareIsTwoLayers) {
     EXPECT_EQ(layers, (std::set<int>{8, 9}));
 }
 
+// Their normals have zeros of both signs.
+TEST(SurfaceBand, IsCompleteForTrianglesInThePlanesOfTheAxes) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> within(-0.3f, 0.3f);
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float at : {0.0f, 0.0625f, 0.1f, -0.2f}) {
+            Mesh mesh;
+            for (std::uint32_t t = 0; t < 60; ++t) {
+                const glm::vec3 centre(within(random) * 3.0f, within(random) * 3.0f,
+                                       within(random) * 3.0f);
+                for (int corner = 0; corner < 3; ++corner) {
+                    glm::vec3 p =
+                        centre + glm::vec3(within(random), within(random), within(random));
+                    p[axis] = at;
+                    mesh.P.push_back(p);
+                }
+                mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+            }
+            expect_complete(mesh, surface_band(mesh, 1.0 / 32.0), 2000);
+        }
+    }
+}
+
 TEST(SurfaceBand, KnowsTheDistanceAndTheSide) {
     const Mesh mesh = test::sphere(60, 1.0f, glm::vec3(3.0f, 0.0f, 0.0f));
     const SurfaceBand band = surface_band(mesh, 0.04);

@@ -101,7 +101,7 @@ void large_scene(Bench& bench) {
         settings.spp = 1;
         Film film(settings.width, settings.height, {});
         frame = FrameRenderer(scene, rays, settings)
-                    .render({{bound("greenmarble"), nullptr, 1e-3f}}, 0, 0.0, film, {, nullptr});
+                    .render({{bound("greenmarble"), nullptr, 1e-3f, nullptr}}, 0, 0.0, film, {});
     });
     const std::string what = fmt::format("{} triangles, ", triangles);
     Rows& rows = bench.rows;

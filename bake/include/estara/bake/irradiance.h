@@ -29,12 +29,15 @@ struct IrradianceSettings {
 /// as large, until at most a twentieth of the surface is masked or the next would be below
 /// `finest` or above `max_bytes`.
 ///
-/// Param "masked" of the grid is the masked share of the surface. Parallel; the same result for any
-/// number of threads.
-/// @param object  index into Scene::objects. Error if it stands in the scene other than once, or
-///                anything but a camera moves
+/// Params of the grid are max_error and masked, the masked share of the surface. Parallel; the same
+/// result for any number of threads.
+/// @param scene   nothing but cameras moves (moving_node())
+/// @param object  index into Scene::objects. Error if it stands in the scene other than once
 /// @param rays    posed at time 0
 TextureGrid bake_irradiance(const Scene& scene, const RayScene& rays, int object,
                             const IrradianceSettings& settings);
+
+/// The share of the surface that a grid of bake_irradiance() leaves to rays, as found.
+double masked_share(const TextureGrid& grid);
 
 }  // namespace estara

@@ -25,6 +25,9 @@ struct Options {
     std::string camera;               ///< "": the first one
     std::uint64_t max_memory = 0;     ///< bytes; 0: half of the machine's
     VdbWriteOptions file;
+    bool irradiance = false;                      ///< bake the light too
+    double irradiance_error = 0.01;               ///< bound on a lookup of it
+    std::optional<double> irradiance_voxel_size;  ///< object space; none: found
     bool dry_run = false;
     std::string stats;  ///< file name; "": none
     int threads = 0;    ///< 0: one a core
