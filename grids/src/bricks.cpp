@@ -23,11 +23,18 @@ std::string title(const TextureGrid& grid) {
     return grid.object.empty() ? "texture grid" : fmt::format("object \"{}\"", grid.object);
 }
 
+/// The blend of two levels takes a quarter of the way from one to the next, in its middle: three
+/// samples in four then need one level only.
+constexpr float blend_width = 0.25f;
+
 ESTARA_KERNEL float fractional_level(float footprint, float voxel_size, float last,
                                      float bias) noexcept {
-    const float level = log2_kernel(footprint / voxel_size) + bias;
-    const float within = level > 0.0f ? (level < last ? level : last) : 0.0f;
-    return footprint > 0.0f ? within : 0.0f;
+    const float exact = log2_kernel(footprint / voxel_size) + bias;
+    const float within = exact > 0.0f ? (exact < last ? exact : last) : 0.0f;
+    const float whole = float(std::int32_t(within));
+    const float blend = (within - whole - 0.5f * (1.0f - blend_width)) * (1.0f / blend_width);
+    const float level = whole + clamp(blend, 0.0f, 1.0f);
+    return footprint > 0.0f ? level : 0.0f;
 }
 
 }  // namespace

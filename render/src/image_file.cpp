@@ -44,7 +44,8 @@ OIIO::ImageSpec exr_spec(const Film& film) {
     }
     spec.nchannels = int(spec.channelnames.size());
     spec.alpha_channel = 3;
-    spec.attribute("compression", "zip");
+    // Half the time of the default level, for files a tenth larger (measured on the still life).
+    spec.attribute("compression", "zip:2");
     spec.attribute("oiio:ColorSpace", "Linear");
     return spec;
 }
@@ -54,18 +55,24 @@ float within_half(float x) noexcept { return std::clamp(x, -65504.0f, 65504.0f);
 
 ExrPixels exr_pixels(const Film& film) {
     ExrPixels pixels{exr_spec(film), {}};
-    pixels.values.reserve(film.color.size() * std::size_t(pixels.spec.nchannels));
-    const auto append = [&](const auto& value, int components) {
-        for (int c = 0; c < components; ++c) pixels.values.push_back(value[c]);
-    };
-    for (std::size_t i = 0; i < film.color.size(); ++i) {
-        for (int c = 0; c < 4; ++c) pixels.values.push_back(within_half(film.color[i][c]));
-        if (film.aovs.albedo) {
-            for (int c = 0; c < 3; ++c) pixels.values.push_back(within_half(film.albedo[i][c]));
+    const auto stride = std::size_t(pixels.spec.nchannels);
+    pixels.values.resize(film.color.size() * stride);
+    std::size_t first = 0;  // channel of the picture that is copied next
+    const auto copy = [&](const auto& picture, int components, bool as_half) {
+        for (std::size_t i = 0; i < picture.size(); ++i) {
+            float* const to = pixels.values.data() + i * stride + first;
+            for (int c = 0; c < components; ++c) {
+                to[c] = as_half ? within_half(picture[i][c]) : picture[i][c];
+            }
         }
-        if (film.aovs.normal) append(film.N[i], 3);
-        if (film.aovs.position) append(film.P[i], 3);
-        if (film.aovs.depth) pixels.values.push_back(film.depth[i]);
+        first += picture.empty() ? 0 : std::size_t(components);
+    };
+    copy(film.color, 4, true);
+    copy(film.albedo, 3, true);
+    copy(film.N, 3, false);
+    copy(film.P, 3, false);
+    for (std::size_t i = 0; i < film.depth.size(); ++i) {
+        pixels.values[i * stride + first] = film.depth[i];
     }
     return pixels;
 }

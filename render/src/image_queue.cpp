@@ -1,5 +1,6 @@
 #include "estara/render/image_queue.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "estara/render/image_file.h"
@@ -22,9 +23,22 @@ void ImageQueue::rethrow() {
     if (m_error) std::rethrow_exception(std::exchange(m_error, nullptr));
 }
 
+Film ImageQueue::film(int width, int height, const Aovs& aovs) {
+    {
+        const std::lock_guard lock(m_mutex);
+        if (!m_finished.empty()) {
+            Film used = std::move(m_finished.back());
+            m_finished.pop_back();
+            if (used.width == width && used.height == height && used.aovs == aovs) return used;
+        }
+    }
+    return {width, height, aovs};
+}
+
 void ImageQueue::push(Film film, int frame, const std::vector<FilePattern>& patterns) {
     std::unique_lock lock(m_mutex);
-    m_changed.wait(lock, [&] { return m_jobs.size() < max_pending; });
+    const std::size_t most = std::max<std::size_t>(1, pending_bytes / film.bytes());
+    m_changed.wait(lock, [&] { return m_jobs.size() < most; });
     rethrow();
     m_jobs.push_back({std::move(film), frame, patterns});
     lock.unlock();
@@ -48,6 +62,7 @@ void ImageQueue::work() {
         lock.unlock();
         if (!failed) write(job);
         lock.lock();
+        if (m_finished.empty()) m_finished.push_back(std::move(m_jobs.front().film));
         m_jobs.pop_front();
         m_changed.notify_all();
     }

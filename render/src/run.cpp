@@ -75,7 +75,8 @@ public:
         ImageQueue queue;
         for (const int frame : frames) {
             if (m_options.compare_direct) queue.finish();  // times are compared: nothing else runs
-            Film film = new_film();
+            Film film =
+                queue.film(m_options.frame.width, m_options.frame.height, m_options.frame.aovs);
             records.push_back(render_frame(frame, film, [&] { progress.advance(1); }));
             queue.push(std::move(film), frame, m_options.outputs);
         }
@@ -84,10 +85,6 @@ public:
     }
 
 private:
-    Film new_film() const {
-        return {m_options.frame.width, m_options.frame.height, m_options.frame.aovs};
-    }
-
     FrameRecord render_frame(int frame, Film& film, const std::function<void()>& tile_done) {
         const double time = frame / m_options.fps;
         FrameRecord record{frame, {}, {}, {}, {}};
@@ -96,7 +93,7 @@ private:
         }
         record.cost = m_renderer.render(m_wardrobe.chosen, m_camera, time, film, tile_done);
         if (m_options.compare_direct) {
-            Film reference = new_film();
+            Film reference(m_options.frame.width, m_options.frame.height, m_options.frame.aovs);
             record.direct =
                 m_renderer.render(m_wardrobe.direct, m_camera, time, reference, tile_done);
             record.error = compare_films(film, reference);

@@ -54,7 +54,7 @@ const ObjectShading& TileRenderer::shading_of(const FrameContext& frame, const G
 
 void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, Film& film) {
     list_pixels(frame, corner);
-    m_sums = {};
+    clear_sums(frame.settings.aovs);
     for (const glm::vec2& offset : frame.pattern) {
         trace(frame, offset);
         group_by_instance(frame);
@@ -70,6 +70,16 @@ void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, F
         accumulate(frame);
     }
     resolve(frame, film);
+}
+
+void TileRenderer::clear_sums(const Aovs& wanted) {
+    std::fill_n(m_sums.color[0], 3 * capacity, 0.0f);
+    std::fill_n(m_sums.hits, capacity, 0);
+    if (!wanted.any()) return;
+    for (Planes* planes : {&m_sums.albedo, &m_sums.N, &m_sums.P}) {
+        std::fill_n((*planes)[0], 3 * capacity, 0.0f);
+    }
+    std::fill_n(m_sums.depth, capacity, 0.0f);
 }
 
 // In squares of 4 x 4 pixels: the 16 rays of a packet stay close together.
@@ -150,20 +160,44 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
     const Mesh& mesh = frame.scene.objects[object].mesh;
     const glm::vec3* const Ng = frame.face_normals[object].data();
     const glm::vec3* const N = mesh.N.empty() ? nullptr : mesh.N.data();
-    const glm::vec2* const uv = mesh.has_uv() ? mesh.uv.data() : nullptr;
+    // A Domain::point shader reads no texture coordinates, and what a lookup misses of another's is
+    // given them later.
+    const ObjectShading& shading = shading_of(frame, group);
+    const bool needs_uv = shading.shader->domain() == Domain::surface && !shading.pyramid;
+    const glm::vec2* const uv = needs_uv && mesh.has_uv() ? mesh.uv.data() : nullptr;
     SurfaceBatch& surface = m_samples.surface;
-    for (int j = group.first; j < group.last; ++j) {
-        const int i = m_order[j];
-        m_samples.pixel[j] = i;
-        const std::uint32_t triangle = m_hits.triangle[i];
-        const glm::uvec3 t = mesh.triangles[triangle];
-        const float b1 = m_hits.b1[i], b2 = m_hits.b2[i], b0 = 1.0f - b1 - b2;
-        put(surface.P, j, b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z]);
-        put(m_samples.Ng_object, j, Ng[triangle]);
-        put(surface.N, j, N ? b0 * N[t.x] + b1 * N[t.y] + b2 * N[t.z] : Ng[triangle]);
-        const glm::vec2 st = uv ? b0 * uv[t.x] + b1 * uv[t.y] + b2 * uv[t.z] : glm::vec2(0.0f);
-        surface.uv[0][j] = st.x;
-        surface.uv[1][j] = st.y;
+    // Vertices are anywhere in memory: those of some samples are asked for before any is used.
+    constexpr int ahead = 32;
+    std::array<glm::uvec3, ahead> corners;
+    for (int first = group.first; first < group.last; first += ahead) {
+        const int last = std::min(first + ahead, group.last);
+        for (int j = first; j < last; ++j) {
+            const int i = m_order[j];
+            m_samples.pixel[j] = i;
+            __builtin_prefetch(&mesh.triangles[m_hits.triangle[i]]);
+            __builtin_prefetch(&Ng[m_hits.triangle[i]]);
+        }
+        for (int j = first; j < last; ++j) {
+            const glm::uvec3 t = mesh.triangles[m_hits.triangle[m_order[j]]];
+            corners[std::size_t(j - first)] = t;
+            for (int k = 0; k < 3; ++k) {
+                __builtin_prefetch(&mesh.P[t[k]]);
+                if (N) __builtin_prefetch(&N[t[k]]);
+                if (uv) __builtin_prefetch(&uv[t[k]]);
+            }
+        }
+        for (int j = first; j < last; ++j) {
+            const int i = m_order[j];
+            const glm::uvec3 t = corners[std::size_t(j - first)];
+            const float b1 = m_hits.b1[i], b2 = m_hits.b2[i], b0 = 1.0f - b1 - b2;
+            const glm::vec3 g = Ng[m_hits.triangle[i]];
+            put(surface.P, j, b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z]);
+            put(m_samples.Ng_object, j, g);
+            put(surface.N, j, N ? b0 * N[t.x] + b1 * N[t.y] + b2 * N[t.z] : g);
+            const glm::vec2 st = uv ? b0 * uv[t.x] + b1 * uv[t.y] + b2 * uv[t.z] : glm::vec2(0.0f);
+            surface.uv[0][j] = st.x;
+            surface.uv[1][j] = st.y;
+        }
     }
     wide([samples = &m_samples, group]() ESTARA_LOOP {
 #pragma GCC ivdep
@@ -178,16 +212,19 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
                  cancelled ? g.z : n.z / length});
         }
     });
-    if (shading_of(frame, group).shader->domain() != Domain::surface) return;
-    if (shading_of(frame, group).pyramid) return;  // and what it misses is given its tangent later
+    if (!needs_uv) return;
     for (int j = group.first; j < group.last; ++j) {
-        const MeshPoint point{at(surface.P, j),
-                              at(surface.N, j),
-                              at(m_samples.Ng_object, j),
-                              {surface.uv[0][j], surface.uv[1][j]},
-                              m_hits.triangle[m_order[j]]};
+        const MeshPoint point = mesh_point_of(frame, group, j);
         put(surface.dPdu, j, tangent(mesh, point));
     }
+}
+
+/// A sample as a point of its mesh.
+MeshPoint TileRenderer::mesh_point_of(const FrameContext& frame, const Group& group, int j) const {
+    const auto object = std::size_t(frame.instances[group.instance].object);
+    const int i = m_order[j];
+    return mesh_point(frame.scene.objects[object].mesh, m_hits.triangle[i], m_hits.b1[i],
+                      m_hits.b2[i]);
 }
 
 /// World space, and on the side of the eye.
@@ -273,15 +310,10 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
 
     const auto object = std::size_t(frame.instances[group.instance].object);
     const Mesh& mesh = frame.scene.objects[object].mesh;
-    const SurfaceBatch& surface = m_samples.surface;
     m_missed_batch.size = 0;
     m_missed_batch.filter_width = shading.filter_width;
     for (const int j : m_missed) {
-        const MeshPoint point{at(surface.P, j),
-                              at(surface.N, j),
-                              at(m_samples.Ng_object, j),
-                              {surface.uv[0][j], surface.uv[1][j]},
-                              m_hits.triangle[m_order[j]]};
+        const MeshPoint point = mesh_point_of(frame, group, j);
         m_missed_batch.set(m_missed_batch.size++, point.P, point.N, point.uv, tangent(mesh, point));
     }
     m_missed_planes.resize(m_planes.size());
@@ -462,7 +494,7 @@ void TileRenderer::resolve(const FrameContext& frame, Film& film) {
         if (m_sums.hits[i] == 0) continue;
         const float hits = float(m_sums.hits[i]);
         glm::vec3 color = at(m_sums.color, p) * scale;
-        glm::vec3 albedo = at(m_sums.albedo, p) / hits;
+        glm::vec3 albedo = film.aovs.albedo ? at(m_sums.albedo, p) / hits : glm::vec3(0.0f);
         const bool good_color = is_finite(color.x) & is_finite(color.y) & is_finite(color.z);
         const bool good_albedo = is_finite(albedo.x) & is_finite(albedo.y) & is_finite(albedo.z);
         if (!good_color || !good_albedo) {

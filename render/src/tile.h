@@ -80,11 +80,13 @@ private:
         int hits[capacity];
     };
 
+    void clear_sums(const Aovs& wanted);
     void list_pixels(const FrameContext& frame, const glm::ivec2& corner);
     void trace(const FrameContext& frame, const glm::vec2& offset);
     void group_by_instance(const FrameContext& frame);
     void place_on_surface(const FrameContext& frame, const Group& group);
     void interpolate(const FrameContext& frame, const Group& group);
+    MeshPoint mesh_point_of(const FrameContext& frame, const Group& group, int j) const;
     void turn_normals(const PosedInstance& instance, const Group& group);
     void evaluate(const FrameContext& frame, const Group& group);
     void look_up(const FrameContext& frame, const Group& group, const ObjectShading& shading);

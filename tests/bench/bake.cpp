@@ -46,8 +46,7 @@ void add_speed(Rows& rows, double voxel_size) {
         bake_mesh(mesh, *avx2, voxel_size, false).levels.front().planes) {
         rows.disagree("bake: AVX2 and the widest instruction set give different voxels");
     }
-    const double rmse =
-        measure_error(mesh, *widest, grid, error_samples, 0).front().rmse;
+    const double rmse = measure_error(mesh, *widest, grid, error_samples, 0).front().rmse;
     const std::string error = fmt::format("rmse {:.2g}", rmse);
 
     tbb::task_arena one(1), two(2);

@@ -66,10 +66,10 @@ std::vector<ObjectShading> baked(const Scene& scene, RayScene& rays) {
 /// The primary rays of a frame and nothing else.
 void trace_all(const Camera& camera, const RayScene& rays) {
     tbb::parallel_for(0, raster.tiles(), [&](int tile) {
-        thread_local std::vector<Ray> some;
-        thread_local std::vector<Hit> hits(Raster::tile_width * Raster::tile_height);
+        thread_local RayBatch some;
+        thread_local HitBatch hits;
         raster.rays(camera, tile, some);
-        rays.intersect(some, hits.data());
+        rays.intersect(some, hits);
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "estara/bake/bake.h"
@@ -38,16 +39,17 @@ std::vector<glm::vec3> visible_points() {
     const Mesh& mesh = scene.objects.front().mesh;
     const RayScene rays(scene);
     std::vector<glm::vec3> points;
-    std::vector<Ray> tile;
-    std::vector<Hit> hits(batch);
+    const auto tile = std::make_unique<RayBatch>();
+    const auto hits = std::make_unique<HitBatch>();
     for (const glm::vec3& forward : {glm::vec3(0, 0, -1), glm::vec3(0, 0, 1)}) {
         const Camera camera = camera_along(bounds(mesh), forward, raster);
         for (int t = 0; t < raster.tiles(); ++t) {
-            raster.rays(camera, t, tile);
-            rays.intersect(tile, hits.data());
-            for (const Hit& hit : hits) {
-                if (hit.instance != Hit::none)
-                    points.push_back(mesh_point(mesh, hit.triangle, hit.b1, hit.b2).P);
+            raster.rays(camera, t, *tile);
+            rays.intersect(*tile, *hits);
+            for (int i = 0; i < tile->size; ++i) {
+                if (hits->instance[i] != Hit::none)
+                    points.push_back(
+                        mesh_point(mesh, hits->triangle[i], hits->b1[i], hits->b2[i]).P);
             }
         }
     }

@@ -16,17 +16,17 @@ struct Raster {
 
     int tiles() const noexcept { return width / tile_width * (height / tile_height); }
 
-    /// Rays through the centres of a tile's pixels.
-    void rays(const Camera& camera, int tile, std::vector<Ray>& out) const {
+    /// Rays through the centres of a tile's pixels, in packets of 4 x 4.
+    void rays(const Camera& camera, int tile, RayBatch& out) const {
         const int columns = width / tile_width;
         const glm::ivec2 corner(tile % columns * tile_width, tile / columns * tile_height);
-        out.clear();
+        float x[tile_width * tile_height], y[tile_width * tile_height];
         for (int i = 0; i < tile_width * tile_height; ++i) {
             const int square = i / 16, inside = i % 16;
-            const int x = corner.x + square % (tile_width / 4) * 4 + inside % 4;
-            const int y = corner.y + square / (tile_width / 4) * 4 + inside / 4;
-            out.push_back(camera.primary_ray(float(x) + 0.5f, float(y) + 0.5f));
+            x[i] = float(corner.x + square % (tile_width / 4) * 4 + inside % 4) + 0.5f;
+            y[i] = float(corner.y + square / (tile_width / 4) * 4 + inside / 4) + 0.5f;
         }
+        camera.primary_rays(x, y, tile_width * tile_height, out);
     }
 };
 

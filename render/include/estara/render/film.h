@@ -18,6 +18,7 @@ struct Aovs {
     bool depth = false;     ///< "depth": distance to the eye, world units
 
     bool any() const noexcept { return albedo || normal || position || depth; }
+    bool operator==(const Aovs&) const = default;
 };
 
 /// Switches on the picture of that name: albedo, N, P or depth. Error for any other, listing them.
@@ -34,6 +35,13 @@ struct Film {
         color;  ///< linear Rec. 709, associated alpha = share of the pixel covered
     std::vector<glm::vec3> albedo, N, P;  ///< mean over the samples that hit something
     std::vector<float> depth;             ///< likewise
+
+    /// Of memory.
+    std::size_t bytes() const noexcept {
+        return color.size() * sizeof color[0] +
+               (albedo.size() + N.size() + P.size()) * sizeof(glm::vec3) +
+               depth.size() * sizeof(float);
+    }
 
     std::size_t index(int x, int y) const noexcept {
         return std::size_t(y) * std::size_t(width) + std::size_t(x);
