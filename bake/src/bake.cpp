@@ -12,11 +12,13 @@ namespace estara {
 
 namespace {
 
-/// Peak memory of bake_mesh() in bytes: for an active voxel of level 0 the distance and its share
-/// of the blocks, for each float of the record the planes of all levels, for a triangle its places
-/// in blocks. What it returns measured 21.8 bytes a voxel with three floats and 27.1 with four, and
-/// the peak 1.05 to 1.10 times that from 3 to 13 million voxels; the rest is margin.
-constexpr double bytes_per_voxel = 8.0, bytes_per_float = 6.5, bytes_per_triangle = 48.0;
+/// Peak memory of a bake in bytes: for an active voxel of level 0 the distance, its share of the
+/// blocks and what writing takes; for each float of the record the planes of all levels; for a
+/// triangle its mesh, and its places in blocks. Then the bricks around the points where the error
+/// is measured, and the pieces of the file that are being packed. From 0.4 to 12 million voxels the
+/// peak was 3 to 20 % below this (estara-bake --stats, peak_memory, less program_bytes).
+constexpr double bytes_per_voxel = 9.0, bytes_per_float = 7.5, bytes_per_triangle = 148.0;
+constexpr double checking_bytes_per_voxel = 8.0, most_checking_bytes = 64e6;
 
 void describe(TextureGrid& grid, const Mesh& mesh, const BoundShader& shader) {
     grid.shader = shader.info().name;
@@ -43,6 +45,7 @@ BakeEstimate estimate_bake(const Mesh& mesh, const ShaderInfo& shader, double vo
     const double scale = coarse / voxel_size;
     const double voxels = double(surface_band(mesh, coarse).voxels()) * scale * scale;
     const double bytes = voxels * (bytes_per_voxel + bytes_per_float * shader.baked_floats) +
+                         std::min(voxels * checking_bytes_per_voxel, most_checking_bytes) +
                          bytes_per_triangle * double(mesh.triangles.size());
     return {std::uint64_t(voxels), std::uint64_t(bytes)};
 }

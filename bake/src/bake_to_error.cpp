@@ -53,9 +53,10 @@ double worst_rmse(const TextureGrid& grid) {
         best ? fmt::format("the smallest voxel that fits, {:.3g}, reached {:.3g}", best->size,
                            best->error)
              : "no voxel fits";
-    throw Error(fmt::format("RMSE {:.3g} is out of reach within --max-memory {}: {}", bound,
-                            format_bytes(max_bytes), reached),
-                ExitStatus::failed);
+    throw Error(
+        fmt::format("RMSE {:.3g} is out of reach within the {} that --max-memory leaves: {}", bound,
+                    format_bytes(max_bytes), reached),
+        ExitStatus::failed);
 }
 
 /// A voxel size and what a bake with it will take.

@@ -40,7 +40,7 @@ void check_size(const Job& job, double size) {
 /// Estimates all jobs with their voxels `factor` times as large.
 /// @return bytes of all of them: they go into one file and are in memory together
 std::uint64_t estimate(std::vector<Job>& jobs, double factor) {
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = program_bytes;
     for (Job& job : jobs) {
         if (!job.voxel_size) continue;
         job.estimate = naming(job, [&] {

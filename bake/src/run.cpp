@@ -219,7 +219,7 @@ void bake_all_jobs(const std::vector<Job>& jobs, const Scene& scene, const Optio
                    const Output& output) {
     const Stopwatch watch;
     std::vector<Done> bakes;
-    std::uint64_t held = 0;  // by the grids that are done
+    std::uint64_t held = program_bytes;  // and by the grids that are done
     const auto left = [&] { return options.max_memory > held ? options.max_memory - held : 0; };
     std::unique_ptr<RayScene> rays;
     if (options.irradiance) rays = std::make_unique<RayScene>(scene);

@@ -38,6 +38,7 @@ Json json_of(const FrameStatistics& s) {
             {"shadow_rays", s.shadow_rays},
             {"samples", s.samples},
             {"lookups", s.lookups},
+            {"irradiance_lookups", s.irradiance_lookups},
             {"misses", s.misses},
             {"bad_pixels", s.bad_pixels}};
 }
@@ -93,6 +94,7 @@ Json settings_json(const RunRecord& run) {
               {"height", o.frame.height},
               {"spp", o.frame.spp},
               {"exposure", o.frame.exposure},
+              {"shadows", o.frame.shadows},
               {"seed", o.frame.seed},
               {"camera", o.camera},
               {"threads", o.threads}};

@@ -14,6 +14,9 @@ namespace estara {
 /// Told how many voxels more have been shaded; called from several threads.
 using VoxelsDone = std::function<void(std::uint64_t)>;
 
+/// What estara-bake takes before it bakes anything.
+inline constexpr std::uint64_t program_bytes = std::uint64_t{48} << 20;
+
 /// What a bake of a mesh will take, estimated without doing it.
 struct BakeEstimate {
     std::uint64_t voxels = 0;  ///< active voxels of level 0

@@ -22,7 +22,7 @@ struct ObjectShading {
     float filter_width = 1.0f;                    ///< of direct evaluation, object space, > 0
     /// Baked diffuse light, shadows included (grids/README.md, "Irradiance"); null: from the
     /// lights.
-    std::shared_ptr<const BrickPyramid> irradiance;
+    std::shared_ptr<const BrickPyramid> irradiance{};
 };
 
 struct FrameSettings {
