@@ -57,7 +57,7 @@ ShaderInfo make_info() {
     std::apply(
         [&](const auto&... c) {
             (info.channels.push_back(
-                 {c.name, int(sizeof(record.*c.member) / sizeof(float)), c.help}),
+                 {c.name, int(sizeof(record.*c.member) / sizeof(float)), c.help, c.kind}),
              ...);
         },
         S::channels());
@@ -74,10 +74,15 @@ public:
         std::apply([&](const auto&... p) { (assign(m_shader.*p.member, values[i++]), ...); },
                    S::params());
         if constexpr (requires { m_shader.resolved(has_uv); }) m_shader = m_shader.resolved(has_uv);
+        if (!perturbs_normal(m_shader) && m_info.channels.back().kind == ChannelKind::normal) {
+            m_info.channels.pop_back();
+            m_info.baked_floats -= 3;
+        }
     }
 
     const ShaderInfo& info() const noexcept override { return m_info; }
     Domain domain() const noexcept override { return domain_of(m_shader); }
+    bool layered() const noexcept override { return estara::layered(m_shader); }
 
     std::vector<glm::vec3> values() const override {
         std::vector<glm::vec3> v;
@@ -96,7 +101,7 @@ public:
     }
 
 private:
-    const ShaderInfo& m_info;
+    ShaderInfo m_info;
     InstructionSet m_limit;
     S m_shader;
 };

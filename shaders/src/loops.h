@@ -10,20 +10,23 @@ namespace estara::detail {
 
 /// Writes a record to column i of planes, channel by channel. (Not by copying its bytes: that
 /// becomes one 16-byte move, which keeps the loop scalar.)
+/// @param normal  whether there are planes for a channel that is the normal
 template <class S, std::size_t channel = 0, int plane = 0>
-ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i) noexcept {
+ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i,
+                         bool normal) noexcept {
     constexpr auto channels = S::channels();
     if constexpr (channel < std::tuple_size_v<decltype(channels)>) {
+        if (std::get<channel>(channels).kind == ChannelKind::normal && !normal) return;
         const auto& value = baked.*std::get<channel>(channels).member;
         float* const column = planes + plane * SurfaceBatch::capacity + i;
         if constexpr (std::is_same_v<decltype(value), const float&>) {
             column[0] = value;
-            store<S, channel + 1, plane + 1>(baked, planes, i);
+            store<S, channel + 1, plane + 1>(baked, planes, i, normal);
         } else {
             column[0 * SurfaceBatch::capacity] = value.x;
             column[1 * SurfaceBatch::capacity] = value.y;
             column[2 * SurfaceBatch::capacity] = value.z;
-            store<S, channel + 1, plane + 3>(baked, planes, i);
+            store<S, channel + 1, plane + 3>(baked, planes, i, normal);
         }
     }
 }
@@ -44,6 +47,7 @@ template <class S>
 ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, int last,
                              float* __restrict planes) noexcept {
     const float filter_width = in.filter_width;
+    const bool normal = perturbs_normal(shader);
     if constexpr (HasOctaves<S>) {
         float sums[SurfaceBatch::capacity] = {};
         const int octaves = octaves_for(filter_width * octave_frequency_of(shader));
@@ -53,20 +57,24 @@ ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, 
             }
         }
         for (int i = first; i < last; ++i) {
-            store<S>(shader.bake(point_of(in, i, filter_width, sums[i])), planes, i);
+            store<S>(shader.bake(point_of(in, i, filter_width, sums[i])), planes, i, normal);
         }
     } else {
         for (int i = first; i < last; ++i) {
-            store<S>(shader.bake(point_of(in, i, filter_width, 0.0f)), planes, i);
+            store<S>(shader.bake(point_of(in, i, filter_width, 0.0f)), planes, i, normal);
         }
     }
 }
 
-/// Reads a record from column i of planes.
+/// Reads a record from column i of planes; not the normal, which is in Seen.
 template <class S, std::size_t channel = 0, int plane = 0>
 ESTARA_KERNEL void load(typename S::Baked& baked, const float* planes, int i) noexcept {
     constexpr auto channels = S::channels();
     if constexpr (channel < std::tuple_size_v<decltype(channels)>) {
+        if constexpr (std::get<channel>(channels).kind == ChannelKind::normal) {
+            (baked.*std::get<channel>(channels).member) = glm::vec3(0.0f);
+            return;
+        }
         auto& value = baked.*std::get<channel>(channels).member;
         const float* const column = planes + plane * SurfaceBatch::capacity + i;
         if constexpr (std::is_same_v<decltype(value), float&>) {
@@ -79,7 +87,7 @@ ESTARA_KERNEL void load(typename S::Baked& baked, const float* planes, int i) no
     }
 }
 
-/// @tparam lit  the batch's light alone, or what E and A make
+/// @tparam lit  the batch's light alone, or what E, A and the surface itself make
 template <bool lit, class S>
 ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatch& seen, int first,
                              int last, float* __restrict Ci) noexcept {
@@ -95,7 +103,8 @@ ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatc
                        seen.V[i],
                        lit ? glm::vec3(0.0f) : glm::vec3(seen.E[0][i], seen.E[1][i], seen.E[2][i]),
                        A,
-                       std::span<const Light>(&light, lit ? 1 : 0)};
+                       std::span<const Light>(&light, lit ? 1 : 0),
+                       lit ? 0.0f : 1.0f};
         const glm::vec3 color = shader.view(baked, one);
         Ci[i] = color.x;
         Ci[stride + i] = color.y;

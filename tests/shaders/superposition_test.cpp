@@ -31,7 +31,7 @@ void expect_superposition() {
         }
         glm::vec3 sum = shader.view(baked, Seen{N, V, E, A, {}});
         for (const Light& light : lights) {
-            sum += shader.view(baked, Seen{N, V, none, none, {&light, 1}});
+            sum += shader.view(baked, Seen{N, V, none, none, {&light, 1}, 0.0f});
         }
         const glm::vec3 whole = shader.view(baked, Seen{N, V, E, A, lights});
         for (int c = 0; c < 3; ++c) {

@@ -32,8 +32,8 @@ struct alignas(64) SurfaceBatch {
 };
 
 /// As many points as one camera sees them: Seen for each, with the same light or with none. The
-/// light of several is a sum: what a point sends to the eye is linear in (E, A, lights), tested for
-/// every shader.
+/// light of several is a sum: what a point sends to the eye is linear in (E, A, lights, glow),
+/// tested for every shader.
 struct alignas(64) SeenBatch {
     static constexpr int capacity = batch_capacity;
 

@@ -48,10 +48,19 @@ struct ParamInfo {
     int components() const noexcept { return type == ValueType::color ? 3 : 1; }
 };
 
+/// What a channel is to the renderer.
+enum class ChannelKind {
+    value,      ///< a number or a colour, given to view() as it is
+    normal,     ///< unit shading normal, object space, in place of the mesh's: view() sees it as
+                ///< Seen::N, and E is the light on it
+    direction,  ///< unit vector along the surface, object space; given to view() in world space
+};
+
 struct ChannelInfo {
     std::string_view name;  ///< also the name of the grid in the .vdb
     int components;         ///< 1 or 3
     std::string_view help;
+    ChannelKind kind;
 };
 
 struct ShaderInfo {
@@ -82,8 +91,12 @@ class BoundShader {
 public:
     virtual ~BoundShader() = default;
 
+    /// Of the shader with these parameters: without its normal channel if they do not perturb it.
     virtual const ShaderInfo& info() const noexcept = 0;
     virtual Domain domain() const noexcept = 0;
+    /// Whether it is more than a colour of the surface point with a highlight: then it has no place
+    /// in a grid, and its record is kept in the renderer's cache.
+    virtual bool layered() const noexcept = 0;
 
     /// Value of every parameter, in the order of info().params.
     virtual std::vector<glm::vec3> values() const = 0;
@@ -98,10 +111,10 @@ public:
         bake(in, 0, in.size, planes);
     }
 
-    /// The view-dependent part of points [first, last) of planes as bake() lays them out: their
-    /// outgoing colour, linear Rec. 709. The whole of it is a sum: what E and A make, and what each
-    /// light makes alone.
-    /// @param lit  the batch's light alone, E and A count as 0; or E and A, and no light
+    /// The view-dependent part of points [first, last) of planes as bake() lays them out, but with
+    /// ChannelKind::direction in world space: their outgoing colour, linear Rec. 709. The whole of
+    /// it is a sum: what E, A and the surface itself make, and what each light makes alone.
+    /// @param lit  the batch's light alone, E, A and glow count as 0; or those, and no light
     /// @param Ci   three planes of SeenBatch::capacity floats
     virtual void view(const float* planes, const SeenBatch& seen, int first, int last, bool lit,
                       float* Ci) const noexcept = 0;

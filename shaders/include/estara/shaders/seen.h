@@ -50,6 +50,9 @@ struct Seen {
     glm::vec3 E;      ///< diffuse light on N: sum of Cl <N.L>+, shadows included
     glm::vec3 A;      ///< sum of the ambient lights
     std::span<const Light> lights;
+    /// Weight of what the surface sends without any light: 1, or 0 where the share of one light
+    /// alone is asked for.
+    float glow = 1.0f;
 };
 
 }  // namespace estara

@@ -13,6 +13,9 @@
 //                                                   length depends on the filter width: octave_sum
 //     float   octave_frequency() const noexcept;    lattice cells per length in term 0; default: 1
 //     S       resolved(bool has_uv) const noexcept; settles parameters that depend on the mesh
+//     bool    layered() const noexcept;             see BoundShader::layered(); default: false
+//     bool    perturbs_normal() const noexcept;     whether its normal channel, the last one, is
+//                                                   used with these parameters; default: true
 #pragma once
 
 #include <glm/glm.hpp>
@@ -40,12 +43,14 @@ struct Param {
     std::string_view help;
 };
 
-/// A channel of the record that bake() leaves for view(): a grid of the .vdb.
+/// A channel of the record that bake() leaves for view(): a grid of the .vdb. A channel that is the
+/// normal comes last, and reaches view() as Seen::N alone.
 template <class B, class T>
 struct Channel {
     std::string_view name;
     T B::*member;
     std::string_view help;
+    ChannelKind kind = ChannelKind::value;
 };
 
 /// Whether S has a sum over octaves; is_shader() refuses an octave() of another form.
@@ -77,6 +82,22 @@ constexpr std::size_t bytes_declared(const Tuple& declared) {
                       declared);
 }
 
+template <class B, class T>
+constexpr bool kind_fits(const Channel<B, T>& channel, bool last) {
+    if (channel.kind == ChannelKind::value) return true;
+    return std::is_same_v<T, glm::vec3> && (last || channel.kind != ChannelKind::normal);
+}
+
+template <class Tuple>
+constexpr bool kinds_fit(const Tuple& channels) {
+    return std::apply(
+        [](const auto&... one) {
+            std::size_t left = sizeof...(one);
+            return (true && ... && kind_fits(one, --left == 0));
+        },
+        channels);
+}
+
 }  // namespace detail
 
 /// Refuses, with a sentence, a type that is not a shader. True for every shader.
@@ -98,6 +119,9 @@ consteval bool is_shader() {
             sizeof(Baked) == detail::bytes_declared(S::channels()),
         "every member of Baked is one of its channels(): what is not stored cannot be read back");
     static_assert(
+        detail::kinds_fit(S::channels()),
+        "a channel that is a normal or a direction is a vec3, and a normal is the last channel");
+    static_assert(
         HasOctaves<S> || !requires { &S::octave; },
         "octave() takes a SurfacePoint and an int and returns a float; it is const and noexcept");
     return true;
@@ -109,6 +133,24 @@ Domain domain_of(const S& shader) noexcept {
         return shader.domain();
     } else {
         return Domain::point;
+    }
+}
+
+template <class S>
+bool layered(const S& shader) noexcept {
+    if constexpr (requires { shader.layered(); }) {
+        return shader.layered();
+    } else {
+        return false;
+    }
+}
+
+template <class S>
+bool perturbs_normal(const S& shader) noexcept {
+    if constexpr (requires { shader.perturbs_normal(); }) {
+        return shader.perturbs_normal();
+    } else {
+        return true;
     }
 }
 
