@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "estara/bake/bake.h"
@@ -68,6 +69,7 @@ struct Attempt {
 /// The wanted size, or the smallest one that floats and memory allow if that is larger.
 Attempt feasible(const Mesh& mesh, const ShaderInfo& shader, double wanted,
                  std::uint64_t max_bytes) {
+    if (max_bytes == 0) return {std::numeric_limits<double>::infinity(), {}};
     const double size = std::max(wanted, finest_voxel_size(mesh));
     Attempt attempt{size, estimate_bake(mesh, shader, size)};
     // The estimate goes with 1 / size^2, but not exactly: a few steps settle it.

@@ -58,7 +58,8 @@ public:
     /// @return masked share of the surface
     double bake(double voxel_size) {
         fill(voxel_size);
-        const double masked = mask(voxel_size);
+        mask(voxel_size);
+        const double masked = masked_area();
         m_result.params = {{"max_error", {float(m_settings.max_error)}},
                            {masked_param, {float(masked)}}};
         return masked;
@@ -151,7 +152,7 @@ private:
     }
 
     /// Masks the cells in which a lookup was seen to be wrong.
-    double mask(double voxel_size) {
+    void mask(double voxel_size) {
         GridLevel& level = m_result.levels.front();
         // An active voxel stands for about a third of a voxel's square of surface.
         const std::uint64_t samples =
@@ -166,7 +167,6 @@ private:
                         }
                     }
                 });
-        std::uint64_t count = 0;
         for (const std::vector<glm::vec3>& some : bad) {
             for (const glm::vec3& P : some) {
                 const glm::ivec3 cell(glm::floor((glm::dvec3(P) - m_result.origin) / voxel_size));
@@ -174,9 +174,30 @@ private:
                     set_mask(level, cell + glm::ivec3(corner >> 2, (corner >> 1) & 1, corner & 1));
                 }
             }
-            count += some.size();
         }
-        return double(count) / double(samples);
+    }
+
+    /// Share of the surface at which a lookup finds the mask: the cells that mask() marks, and
+    /// what it reaches into their neighbours.
+    double masked_area() const {
+        const SurfaceSampler sampler(m_mesh);
+        const BrickPyramid bricks = finest_level();
+        constexpr std::uint64_t batches = 128;
+        const std::vector<float> finest(batch, 0.0f);
+        std::vector<MeshPoint> points;
+        std::vector<glm::vec3> P(batch);
+        std::vector<float> values(floats * batch);
+        std::vector<std::uint8_t> found(batch);
+        std::uint64_t masked = 0;
+        for (std::uint64_t b = 0; b < batches; ++b) {
+            sampler.points(2 * m_settings.seed, b, batch, points);
+            for (std::size_t i = 0; i < batch; ++i) P[i] = points[i].P;
+            bricks.lookup(P, finest, values.data(), batch, found.data());
+            for (std::size_t i = 0; i < batch; ++i) {
+                masked += values[3 * batch + i] > irradiance_mask_limit ? 1 : 0;
+            }
+        }
+        return double(masked) / double(batches * batch);
     }
 
     static void set_mask(GridLevel& level, const glm::ivec3& voxel) {

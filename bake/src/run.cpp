@@ -101,11 +101,14 @@ Done bake_job(const Job& job, const Options& options, std::uint64_t max_memory) 
     return done;
 }
 
+std::string size_of(const TextureGrid& grid) {
+    return fmt::format("{} voxels of {:.4g} on {} level{}", grid.levels.front().voxels(),
+                       grid.voxel_size, grid.levels.size(), grid.levels.size() == 1 ? "" : "s");
+}
+
 std::string describe_light(const TextureGrid& light) {
-    std::string text =
-        fmt::format("\n    irradiance: {} voxels of {:.4g} on {} levels, {:.2g} % left to rays",
-                    light.levels.front().voxels(), light.voxel_size, light.levels.size(),
-                    100.0 * masked_share(light));
+    std::string text = fmt::format("\n    irradiance: {}, {:.2g} % left to rays", size_of(light),
+                                   100.0 * masked_share(light));
     if (light.errors.empty()) return text;
     const ErrorFigures& e = light.errors.front();
     return text + fmt::format(
@@ -117,9 +120,7 @@ std::string describe_light(const TextureGrid& light) {
 std::string describe_bake(const Done& done) {
     const TextureGrid& grid = done.grid;
     std::string text =
-        fmt::format("{}: {} voxels of {:.4g} on {} level{}, {}", grid.object,
-                    grid.levels.front().voxels(), grid.voxel_size, grid.levels.size(),
-                    grid.levels.size() == 1 ? "" : "s", format_seconds(done.seconds));
+        fmt::format("{}: {}, {}", grid.object, size_of(grid), format_seconds(done.seconds));
     for (std::size_t c = 0; c < grid.channels.size(); ++c) {
         const ErrorFigures& e = grid.errors[c];
         text += fmt::format(

@@ -172,8 +172,8 @@ void add_picture(CLI::App& app, Options& options, Words& words) {
     app.add_option("--ambient", words.ambient, "ambient light (default: the scene's)")
         ->type_name("R,G,B")
         ->group("Picture");
-    app.add_flag("--shadows,!--no-shadows", options.frame.shadows,
-                 "lights cast shadows (default: yes)")
+    app.add_flag_callback(
+           "--no-shadows", [&] { options.frame.shadows = false; }, "nothing casts a shadow")
         ->group("Picture");
     app.add_option("--seed", options.frame.seed, "shifts the samples inside the pixels")
         ->type_name("N")

@@ -201,6 +201,69 @@ TEST(Light, OfASmoothSurfaceItselfLeavesNoSpots) {
     }
 }
 
+/// What the sun of (1, 0, 0, 0) leaves on a unit ball, baked; masked where x > `masked_from`.
+std::shared_ptr<const BrickPyramid> baked_sunlight(const BoundShader& any, float masked_from) {
+    TextureGrid grid = grid_of(any, 8);
+    grid.channels = {{"irradiance", 3}, {"irradiance_mask", 1}};
+    GridLevel& level = grid.levels.front();
+    level.planes.assign(4, std::vector<float>(level.blocks.size() * 512));
+    for (const Block& block : level.blocks) {
+        for (int i = 0; i < 512; ++i) {
+            const glm::dvec3 index(block.origin + glm::ivec3(i / 64, i / 8 % 8, i % 8));
+            const glm::dvec3 P = grid.origin + grid.voxel_size * index;
+            const float E = std::max(0.0f, float(glm::normalize(P).z));
+            for (std::size_t c = 0; c < 3; ++c) level.planes[c][block.first + std::size_t(i)] = E;
+            level.planes[3][block.first + std::size_t(i)] = P.x > double(masked_from) ? 1.0f : 0.0f;
+        }
+    }
+    return std::make_shared<BrickPyramid>(grid);
+}
+
+TEST(Light, ThatIsBakedNeedsNoShadowRayOutsideTheMask) {
+    Scene scene = scene_of({object("ball", sphere(1.0f, 64))});
+    scene.ambient = glm::vec3(0.0f);
+    const Setting matte[] = {{"Ks", {0.0f}}, {"Kd", {1.0f}}, {"Cs", {1.0f}}};
+    scene.objects[0].shader = bind_shader("plastic", matte, false).shader;
+    add_sun(scene, glm::quat(1, 0, 0, 0));
+    std::vector<ObjectShading> shading = direct(scene);
+    FrameStatistics traced, all, half;
+    const Film reference = render(scene, small(1), shading, &traced);
+    shading[0].irradiance = baked_sunlight(*scene.objects[0].shader, 2.0f);
+    const Film film = render(scene, small(1), shading, &all);
+    EXPECT_EQ(all.shadow_rays, 0u);
+    EXPECT_EQ(all.irradiance_lookups, all.samples);
+    EXPECT_LT(largest_difference(film, reference), 0.02f);  // a voxel is 1/27 of the radius
+    shading[0].irradiance = baked_sunlight(*scene.objects[0].shader, 0.0f);
+    const Film masked = render(scene, small(1), shading, &half);
+    EXPECT_NEAR(double(half.shadow_rays), 0.5 * double(traced.shadow_rays),
+                0.05 * double(traced.shadow_rays));
+    EXPECT_EQ(masked.color[masked.index(45, 25)], reference.color[masked.index(45, 25)]);
+}
+
+TEST(Light, TracesAHighlightWhereItShows) {
+    Scene scene = scene_of({object("ball", sphere(1.0f, 64))});
+    add_sun(scene, glm::quat(1, 0, 0, 0));
+    std::vector<ObjectShading> shading = direct(scene);
+    shading[0].irradiance = baked_sunlight(*scene.objects[0].shader, 2.0f);
+    FrameStatistics cost;
+    const Film film = render(scene, small(1), shading, &cost);
+    EXPECT_GT(cost.shadow_rays, 0u);
+    EXPECT_LT(cost.shadow_rays, cost.samples / 2);
+    EXPECT_LT(largest_difference(film, render(scene, small(1), direct(scene))), 0.02f);
+}
+
+TEST(Light, CastsNoShadowWhereNoneIsWanted) {
+    Scene scene = scene_of({object("ball", sphere(1.0f)), object("screen", sphere(5.0f))});
+    scene.ambient = glm::vec3(0.0f);
+    add_sun(scene, glm::quat(1, 0, 0, 0));
+    FrameSettings settings = small(1);
+    settings.shadows = false;
+    FrameStatistics cost;
+    const Film film = render(scene, settings, direct(scene), &cost);
+    EXPECT_EQ(cost.shadow_rays, 0u);
+    EXPECT_GT(film.color[film.index(35, 25)].r, 0.2f);  // from outside the screen
+}
+
 TEST(Frame, IsTheSameWithOneThreadAndFour) {
     Scene scene = scene_of({object("ball", sphere(1.0f), "wood"), object("b", sphere(0.3f))});
     add_sun(scene, glm::quat(glm::vec3(-0.7f, 0.3f, 0.0f)));

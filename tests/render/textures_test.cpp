@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "estara/grids/irradiance.h"
 #include "estara/render/dress.h"
+#include "estara/scenes/static_light.h"
 #include "small_scene.h"
 
 namespace estara {
@@ -128,6 +130,43 @@ TEST(MatchGrids, WarnsOfAGridThatFitsNothing) {
         (Warnings{"a.vdb: the grid of object \"vase\" (shader 'wood') fits no object of "
                   "test.glb; it has: a, b",
                   "a.vdb: the grid (shader 'wood') fits no object of test.glb; it has: a, b"}));
+}
+
+/// A scene with a sun, and the light on its object as it was baked.
+LoadedGrid light_for(const Scene& scene) {
+    LoadedGrid loaded{"a.vdb", {}};
+    loaded.grid.object = scene.objects[0].name;
+    loaded.grid.shader = irradiance_shader;
+    loaded.grid.mesh_digest = mesh_digest(scene.objects[0].mesh);
+    loaded.grid.lights_digest = lights_digest(scene, 0);
+    loaded.grid.channels = {{irradiance_channel, 3}, {irradiance_mask_channel, 1}};
+    return loaded;
+}
+
+TEST(MatchGrids, BakedLightFitsUntilALightOrAPlaceChanges) {
+    Scene scene = scene_of({wooden("a", 1.0f)});
+    test::add_sun(scene, glm::quat(1, 0, 0, 0));
+    const LoadedGrid light = light_for(scene);
+    EXPECT_EQ(match_grids(scene, {light}).irradiance_of_object, std::vector<int>{0});
+    const std::string start = "a.vdb: object \"a\": baked light: ";
+    const std::string end = "; shadows are traced: bake it again to use it";
+    Scene brighter = scene;
+    brighter.lights[0].intensity *= 1.5f;
+    GridMatch match = match_grids(brighter, {light});
+    EXPECT_EQ(match.irradiance_of_object, std::vector<int>{-1});
+    EXPECT_EQ(match.warnings,
+              Warnings{start + "a light or something that casts shadows has changed" + end});
+    Scene moved = scene;
+    moved.nodes[0].translation = {0.0f, 1.0f, 0.0f};
+    EXPECT_EQ(match_grids(moved, {light}).warnings, match.warnings);
+    Scene twice = scene;
+    twice.instances.push_back(twice.instances[0]);
+    EXPECT_EQ(match_grids(twice, {light}).warnings,
+              Warnings{start + "it stands in the scene 2 times" + end});
+    LoadedGrid other = light;
+    other.grid.channels.pop_back();
+    EXPECT_EQ(match_grids(scene, {other}).warnings,
+              Warnings{start + "its channels are not irradiance and irradiance_mask" + end});
 }
 
 TEST(MatchGrids, LastOfTwoWins) {

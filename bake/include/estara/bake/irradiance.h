@@ -11,10 +11,10 @@
 namespace estara {
 
 struct IrradianceSettings {
-    double max_error = 0.01;           ///< of a lookup, absolute; cells with more are masked
-    std::optional<double> voxel_size;  ///< object space; none: found, see bake_irradiance()
-    double finest = 0.0;               ///< a found size is not below this, > 0 if none is given
-    std::uint64_t max_bytes = 0;       ///< of memory, for a found size
+    double max_error = 0.01;             ///< of a lookup, absolute; cells with more are masked
+    std::optional<double> voxel_size{};  ///< object space; none: found, see bake_irradiance()
+    double finest = 0.0;                 ///< a found size is not below this, > 0 if none is given
+    std::uint64_t max_bytes = 0;         ///< of memory, for a found size
     bool half = false;
     std::uint64_t seed = 0;  ///< of the points where errors are looked for and measured
 };
@@ -37,7 +37,8 @@ struct IrradianceSettings {
 TextureGrid bake_irradiance(const Scene& scene, const RayScene& rays, int object,
                             const IrradianceSettings& settings);
 
-/// The share of the surface that a grid of bake_irradiance() leaves to rays, as found.
+/// The share of the surface that a grid of bake_irradiance() leaves to rays, estimated at 65536
+/// points.
 double masked_share(const TextureGrid& grid);
 
 }  // namespace estara
