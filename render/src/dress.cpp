@@ -7,6 +7,10 @@
 #include <cmath>
 #include <map>
 
+#include "estara/render/strategy.h"
+#include "estara/scenes/error.h"
+#include "estara/scenes/static_light.h"
+
 namespace estara {
 namespace {
 
@@ -51,7 +55,9 @@ ObjectRecord record_of(const Object& object, const ObjectShading& shading) {
     ObjectRecord record{object.name,
                         std::string(object.shader->info().name),
                         describe_values(*object.shader),
-                        shading.pyramid ? Strategy::grid : Strategy::direct,
+                        shading.cached    ? Strategy::cache
+                        : shading.pyramid ? Strategy::grid
+                                          : Strategy::direct,
                         shading.filter_width,
                         ""};
     if (shading.pyramid) {
@@ -84,7 +90,36 @@ std::vector<float> direct_filter_widths(const Scene& scene, RayScene& rays, int 
     return widths;
 }
 
-Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera, const Say& say) {
+bool keeps_light(const Scene& scene, const Options& options) {
+    const std::string moving = moving_node(scene);
+    if (options.cache_light.value_or(false) && !moving.empty()) {
+        throw Error(fmt::format(
+            "--cache-light on: \"{}\" moves, so that light changes; use auto or off", moving));
+    }
+    return options.cache_light.value_or(moving.empty());
+}
+
+std::unique_ptr<ReuseCache> make_cache(const Scene& scene, const Options& options,
+                                       const std::vector<ObjectShading>& shading) {
+    if (std::none_of(shading.begin(), shading.end(),
+                     [](const ObjectShading& s) { return s.cached; })) {
+        return nullptr;
+    }
+    const int lights = keeps_light(scene, options) ? int(scene.lights.size()) : -1;
+    std::vector<RecordLayout> layouts;
+    for (const ObjectShading& one : shading) {
+        const ShaderInfo& info = one.shader->info();
+        const bool has_normal = info.channels.back().kind == ChannelKind::normal;
+        layouts.push_back({info.baked_floats - (has_normal ? 3 : 0), lights});
+    }
+    std::vector<int> objects;
+    for (const Instance& instance : scene.instances) objects.push_back(instance.object);
+    return std::make_unique<ReuseCache>(options.cache_memory, std::move(layouts),
+                                        std::move(objects));
+}
+
+Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
+               const std::vector<int>& frames, const Say& say) {
     const bool is_used = std::any_of(scene.objects.begin(), scene.objects.end(),
                                      [](const Object& o) { return !o.wears_shader(); });
     put_on(scene, options.shader, options.params);
@@ -95,8 +130,9 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
     std::vector<LoadedGrid> grids = load_grids(options.grids);
     const GridMatch match = match_grids(scene, grids);
     for (const std::string& warning : match.warnings) say("warning: " + warning);
-    const bool uses_grids = options.strategy == Strategy::grid;
-    if (uses_grids) tell_missing_grids(scene, match, say);
+    const bool uses_grids =
+        options.strategy == Strategy::grid || options.strategy == Strategy::automatic;
+    if (options.strategy == Strategy::grid) tell_missing_grids(scene, match, say);
 
     std::vector<float> widths(scene.objects.size());
     if (needs_direct_width(scene, match)) {
@@ -115,9 +151,26 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
         if (g >= 0) shading.pyramid = pyramids[std::size_t(g)];
         const int light = match.irradiance_of_object[i];
         if (light >= 0) shading.irradiance = pyramids[std::size_t(light)];
-        wardrobe.records.push_back(record_of(scene.objects[i], shading));
-        if (shading.pyramid) wardrobe.records.back().grid_file = grids[std::size_t(g)].file;
         wardrobe.chosen.push_back(std::move(shading));
+    }
+    std::vector<StrategyChoice> choices;
+    if (options.strategy == Strategy::automatic && !frames.empty()) {
+        choices = choose_strategies(scene, rays, options, camera, frames, wardrobe.direct,
+                                    wardrobe.chosen);
+        for (const std::string& line : describe_choices(scene, choices)) say(line);
+    }
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const Strategy strategy = choices.empty() ? options.strategy : choices[i].chosen;
+        ObjectShading& chosen = wardrobe.chosen[i];
+        if (strategy == Strategy::cache || strategy == Strategy::direct) {
+            chosen = wardrobe.direct[i];
+            chosen.cached = strategy == Strategy::cache;
+        }
+        wardrobe.records.push_back(record_of(scene.objects[i], chosen));
+        if (!choices.empty()) wardrobe.records.back().choice = choices[i];
+        if (chosen.pyramid) {
+            wardrobe.records.back().grid_file = grids[std::size_t(match.grid_of_object[i])].file;
+        }
     }
     return wardrobe;
 }

@@ -15,8 +15,15 @@ void add_aov(Aovs& aovs, const std::string& name) {
         aovs.position = true;
     } else if (name == "depth") {
         aovs.depth = true;
+    } else if (name == "hit") {
+        aovs.hit = true;
+    } else if (name == "age") {
+        aovs.age = true;
+    } else if (name == "occluded") {
+        aovs.occluded = true;
     } else {
-        throw Error(fmt::format("--aov: no '{}'; there are: albedo, N, P, depth", name));
+        throw Error(fmt::format(
+            "--aov: no '{}'; there are: albedo, N, P, depth, hit, age, occluded", name));
     }
 }
 
@@ -28,6 +35,9 @@ Film::Film(int width_, int height_, const Aovs& aovs_)
     if (aovs.normal) N.assign(pixels, glm::vec3(0.0f));
     if (aovs.position) P.assign(pixels, glm::vec3(0.0f));
     if (aovs.depth) depth.assign(pixels, 0.0f);
+    if (aovs.hit) hit.assign(pixels, 0.0f);
+    if (aovs.age) age.assign(pixels, 0.0f);
+    if (aovs.occluded) occluded.assign(pixels, 0.0f);
 }
 
 }  // namespace estara

@@ -2,9 +2,14 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <mutex>
 
 #include "estara/render/sampling.h"
 #include "estara/scenes/program.h"
+#include "reprojection.h"
 #include "tile.h"
 
 namespace estara {
@@ -12,6 +17,7 @@ namespace estara {
 FrameStatistics& FrameStatistics::operator+=(const FrameStatistics& other) noexcept {
     seconds += other.seconds;
     evaluation_seconds += other.evaluation_seconds;
+    light_seconds += other.light_seconds;
     view_seconds += other.view_seconds;
     ray_seconds += other.ray_seconds;
     primary_rays += other.primary_rays;
@@ -21,6 +27,38 @@ FrameStatistics& FrameStatistics::operator+=(const FrameStatistics& other) noexc
     irradiance_lookups += other.irradiance_lookups;
     misses += other.misses;
     bad_pixels += other.bad_pixels;
+    lit += other.lit;
+    shadow_seconds += other.shadow_seconds;
+    reuse += other.reuse;
+    if (objects.size() < other.objects.size()) objects.resize(other.objects.size());
+    for (std::size_t o = 0; o < other.objects.size(); ++o) objects[o] += other.objects[o];
+    return *this;
+}
+
+ObjectCost& ObjectCost::operator+=(const ObjectCost& other) noexcept {
+    evaluation += other.evaluation;
+    recall += other.recall;
+    keep += other.keep;
+    view += other.view;
+    evaluated += other.evaluated;
+    recalled += other.recalled;
+    kept += other.kept;
+    return *this;
+}
+
+ReuseCounts& ReuseCounts::operator+=(const ReuseCounts& other) noexcept {
+    seconds += other.seconds;
+    hits += other.hits;
+    misses += other.misses;
+    occluded += other.occluded;
+    turned += other.turned;
+    refilled += other.refilled;
+    kept += other.kept;
+    refused += other.refused;
+    evicted += other.evicted;
+    records += other.records;
+    bytes += other.bytes;
+    table_bytes += other.table_bytes;
     return *this;
 }
 
@@ -31,13 +69,26 @@ struct FrameRenderer::Impl {
     std::vector<glm::vec2> pattern;
     std::vector<std::vector<glm::vec3>> face_normals;  ///< by object
     tbb::enumerable_thread_specific<TileRenderer> tiles;
+    std::unique_ptr<Reprojection> reprojection;        ///< once a cache is used
+    std::vector<std::unique_ptr<NewRecords>> buffers;  ///< not in use
+
+    /// @param number  of [0, tile_count())
+    void render_tile(const FrameContext& frame, int number, Film& film, NewRecords& found) {
+        const int i = number * settings.tile_step;
+        const glm::ivec2 corner(i % columns() * TileRenderer::width,
+                                i / columns() * TileRenderer::height);
+        tiles.local().render(frame, corner, film, found);
+    }
+    void render_and_keep(const FrameContext& frame, int count, ReuseCache& cache, Film& film,
+                         const std::function<void()>& tile_done, ReuseCounts& counts);
 
     int columns() const { return (settings.width - 1) / TileRenderer::width + 1; }
     int rows() const { return (settings.height - 1) / TileRenderer::height + 1; }
 };
 
 FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSettings& settings)
-    : m_impl(new Impl{scene, rays, settings, sample_pattern(settings.spp, settings.seed), {}, {}}) {
+    : m_impl(new Impl{
+          scene, rays, settings, sample_pattern(settings.spp, settings.seed), {}, {}, {}, {}}) {
     m_impl->face_normals.resize(scene.objects.size());
     tbb::parallel_for(std::size_t{0}, scene.objects.size(), [&](std::size_t i) {
         m_impl->face_normals[i] = face_normals(scene.objects[i].mesh);
@@ -46,39 +97,105 @@ FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSett
 
 FrameRenderer::~FrameRenderer() = default;
 
-int FrameRenderer::tile_count() const noexcept { return m_impl->columns() * m_impl->rows(); }
+int FrameRenderer::tile_count() const noexcept {
+    return (m_impl->columns() * m_impl->rows() - 1) / m_impl->settings.tile_step + 1;
+}
+
+/// Tiles in parallel; what they find goes into the cache in the order of the tiles, so that its
+/// contents do not depend on the threads. A few tiles at a time wait for their turn.
+void FrameRenderer::Impl::render_and_keep(const FrameContext& frame, int count, ReuseCache& cache,
+                                          Film& film, const std::function<void()>& tile_done,
+                                          ReuseCounts& counts) {
+    const auto most = std::size_t(4 * tbb::this_task_arena::max_concurrency());
+    while (buffers.size() < most) buffers.push_back(std::make_unique<NewRecords>());
+    int next = 0;
+    std::vector<NewRecords*> free;
+    for (const auto& buffer : buffers) free.push_back(buffer.get());
+    std::mutex free_mutex;
+    struct Tile {
+        int number;
+        NewRecords* found;
+    };
+    const auto begin = [&](tbb::flow_control& control) -> Tile {
+        if (next == count) {
+            control.stop();
+            return {};
+        }
+        const std::lock_guard lock(free_mutex);
+        NewRecords* const found = free.back();
+        free.pop_back();
+        found->clear();
+        return {next++, found};
+    };
+    const auto render = [&](Tile tile) {
+        render_tile(frame, tile.number, film, *tile.found);
+        if (tile_done) tile_done();
+        return tile;
+    };
+    const auto keep = [&](Tile tile) {
+        const Stopwatch time;
+        const float* floats = tile.found->floats.data();
+        for (const int instance : tile.found->instances) {
+            ++(cache.add(instance, floats) ? counts.kept : counts.refused);
+            floats += cache.layout(instance).floats();
+        }
+        counts.seconds += time.seconds();
+        const std::lock_guard lock(free_mutex);
+        free.push_back(tile.found);
+    };
+    using tbb::filter_mode;
+    tbb::parallel_pipeline(most,
+                           tbb::make_filter<void, Tile>(filter_mode::serial_in_order, begin) &
+                               tbb::make_filter<Tile, Tile>(filter_mode::parallel, render) &
+                               tbb::make_filter<Tile, void>(filter_mode::serial_in_order, keep));
+}
 
 FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading, int camera,
                                       double time, Film& film,
-                                      const std::function<void()>& tile_done) {
+                                      const std::function<void()>& tile_done, ReuseCache* cache) {
     const Stopwatch whole;
     Impl& my = *m_impl;
     const Pose pose = pose_at(my.scene, time);
     my.rays.set_pose(pose);
     const std::vector<PosedInstance> instances = pose_instances(my.scene, pose);
     const std::vector<PosedLight> lights = posed_lights(my.scene, pose);
-    const FrameContext context{
-        my.scene,
-        my.rays,
-        Camera(pinhole_pose(my.scene, my.scene.cameras[std::size_t(camera)], pose),
-               my.settings.width, my.settings.height),
-        instances,
-        lights,
-        shading,
-        my.face_normals,
-        my.pattern,
-        my.settings};
+    const PinholePose eye = pinhole_pose(my.scene, my.scene.cameras[std::size_t(camera)], pose);
+    FrameStatistics statistics;
+    if (cache != nullptr) {
+        const Stopwatch projecting;
+        if (!my.reprojection) my.reprojection = std::make_unique<Reprojection>(my.settings);
+        my.reprojection->start(*cache, eye, instances);
+        statistics.reuse.seconds = projecting.seconds();
+    }
+    const FrameContext context{my.scene,
+                               my.rays,
+                               Camera(eye, my.settings.width, my.settings.height),
+                               instances,
+                               lights,
+                               shading,
+                               my.face_normals,
+                               my.pattern,
+                               my.settings,
+                               cache != nullptr ? my.reprojection.get() : nullptr};
 
     for (TileRenderer& tile : my.tiles) tile.statistics = {};
-    tbb::parallel_for(0, tile_count(), [&](int i) {
-        const glm::ivec2 corner(i % my.columns() * TileRenderer::width,
-                                i / my.columns() * TileRenderer::height);
-        my.tiles.local().render(context, corner, film);
-        if (tile_done) tile_done();
-    });
+    if (cache != nullptr) {
+        my.render_and_keep(context, tile_count(), *cache, film, tile_done, statistics.reuse);
+    } else {
+        NewRecords none;
+        tbb::parallel_for(0, tile_count(), [&](int i) {
+            my.render_tile(context, i, film, none);
+            if (tile_done) tile_done();
+        });
+    }
 
-    FrameStatistics statistics;
     for (const TileRenderer& tile : my.tiles) statistics += tile.statistics;
+    if (cache != nullptr) {
+        statistics.reuse.evicted = cache->evicted();
+        statistics.reuse.records = cache->records();
+        statistics.reuse.bytes = cache->bytes();
+        statistics.reuse.table_bytes = my.reprojection->bytes();
+    }
     statistics.seconds = whole.seconds();
     return statistics;
 }

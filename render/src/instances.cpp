@@ -1,6 +1,7 @@
 #include "instances.h"
 
 #include "estara/scenes/matrix.h"
+#include "estara/scenes/ray_scene.h"
 
 namespace estara {
 
@@ -11,7 +12,7 @@ std::vector<PosedInstance> pose_instances(const Scene& scene, const Pose& pose) 
         const glm::mat4& m = pose.world_from_node[std::size_t(instance.node)];
         const glm::dmat3 linear{glm::mat3(m)};
         posed.push_back({instance.object, m, glm::mat3(normal_matrix(linear)),
-                         float(largest_singular_value(linear)), SurfaceOffset(m)});
+                         float(largest_singular_value(linear)), SurfaceOffset(m), can_be_hit(m)});
     }
     return posed;
 }

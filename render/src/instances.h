@@ -16,6 +16,7 @@ struct PosedInstance {
     glm::mat3 world_from_normal;  ///< inverse transpose up to a positive factor
     float largest_scale;          ///< world length of the longest image of a unit vector
     SurfaceOffset offset;         ///< of rays that leave it
+    bool is_there;                ///< can_be_hit()
 };
 
 std::vector<PosedInstance> pose_instances(const Scene& scene, const Pose& pose);

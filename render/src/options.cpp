@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "estara/render/reuse_cache.h"
 #include "estara/scenes/command_line.h"
 
 namespace estara {
@@ -20,19 +21,24 @@ constexpr const char* examples = R"(Examples:
 struct Words {
     std::vector<std::string> outputs, params, aovs;
     std::string frames, resolution, ambient, compare;
-    std::string cache_memory, window;  // named by the design, to come
+    std::string cache_memory, cache_light = "auto";
     std::string strategy = to_string(Options{}.strategy);
     std::string progress = "auto";
 };
 
 Strategy parse_strategy(const std::string& word) {
-    if (word == "grid") return Strategy::grid;
-    if (word == "direct") return Strategy::direct;
-    if (word == "cache" || word == "auto") {
-        throw Error(
-            fmt::format("strategy '{}' is not built yet: this version has grid and direct", word));
+    for (const Strategy strategy :
+         {Strategy::automatic, Strategy::grid, Strategy::cache, Strategy::direct}) {
+        if (word == to_string(strategy)) return strategy;
     }
-    throw Error(fmt::format("--strategy: no '{}'; there are: grid, direct", word));
+    throw Error(fmt::format("--strategy: no '{}'; there are: auto, grid, cache, direct", word));
+}
+
+std::optional<bool> parse_cache_light(const std::string& word) {
+    if (word == "auto") return std::nullopt;
+    if (word == "on") return true;
+    if (word == "off") return false;
+    throw Error(fmt::format("--cache-light: no '{}'; there are: auto, on, off", word));
 }
 
 void check_ranges(const Options& options) {
@@ -44,6 +50,10 @@ void check_ranges(const Options& options) {
     }
     if (!(std::abs(options.frame.exposure) <= 100.0f)) {
         throw Error(fmt::format("--exposure {}: must be from -100 to 100", options.frame.exposure));
+    }
+    if (options.window < 1 || options.window > ReuseCache::longest_window) {
+        throw Error(fmt::format("--window {}: must be from 1 to {}", options.window,
+                                ReuseCache::longest_window));
     }
     if (options.threads < 0 || options.threads > 4096) {
         throw Error(fmt::format("--threads {}: must be from 0 to 4096", options.threads));
@@ -97,10 +107,11 @@ void interpret(const Words& words, Options& options) {
     if (options.compare_direct && options.strategy == Strategy::direct) {
         throw Error("--compare direct needs another strategy than direct to compare it with");
     }
-    if (!words.cache_memory.empty() || !words.window.empty()) {
-        throw Error(
-            "--cache-memory and --window belong to strategy 'cache', which is not built yet");
+    if (!words.cache_memory.empty()) {
+        options.cache_memory =
+            naming("--cache-memory", [&] { return parse_size(words.cache_memory); });
     }
+    options.cache_light = parse_cache_light(words.cache_light);
     options.progress = parse_progress(words.progress);
     check_ranges(options);
     check_names(options);
@@ -140,8 +151,10 @@ void add_output(CLI::App& app, Options& options, Words& words) {
         ->required()
         ->allow_extra_args(false)
         ->group("Output");
-    app.add_option("--aov", words.aovs,
-                   "albedo, N, P or depth beside the colour in .exr files; may be repeated")
+    app.add_option(
+           "--aov", words.aovs,
+           "beside the colour in .exr files: albedo, N, P, depth, or of the cache hit, age, "
+           "occluded; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false)
         ->group("Output");
@@ -182,9 +195,11 @@ void add_picture(CLI::App& app, Options& options, Words& words) {
 }
 
 void add_work(CLI::App& app, Options& options, Words& words) {
-    app.add_option("--strategy", words.strategy,
-                   "grid: baked where there is a grid, else direct; direct: evaluate everything in "
-                   "every frame")
+    app.add_option(
+           "--strategy", words.strategy,
+           "auto: whichever is fastest, by measurement, object by object; grid: baked where "
+           "there is a grid, else direct; cache: hit points serve several frames; direct: "
+           "evaluate everything in every frame")
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Work");
@@ -192,8 +207,23 @@ void add_work(CLI::App& app, Options& options, Words& words) {
                    "render each frame directly too; print error and times")
         ->type_name("direct")
         ->group("Work");
-    app.add_option("--cache-memory", words.cache_memory)->group("");
-    app.add_option("--window", words.window)->group("");
+    app.add_option("--cache-memory", words.cache_memory,
+                   fmt::format("memory for hit points, as 2G or 512M (default: {})",
+                               format_bytes(options.cache_memory)))
+        ->type_name("SIZE")
+        ->group("Work");
+    app.add_option(
+           "--window", options.window,
+           "frames that a hit point may serve; windows begin at frames 1, 1 + N, 1 + 2N, ...")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Work");
+    app.add_option("--cache-light", words.cache_light,
+                   "whether the cache keeps diffuse light and shadows too: on, off, or auto: if "
+                   "only cameras move")
+        ->type_name("WHEN")
+        ->capture_default_str()
+        ->group("Work");
     app.add_option("--threads", options.threads, "0: one for each core")
         ->type_name("N")
         ->capture_default_str()
@@ -208,7 +238,17 @@ void add_work(CLI::App& app, Options& options, Words& words) {
 }  // namespace
 
 const char* to_string(Strategy strategy) noexcept {
-    return strategy == Strategy::grid ? "grid" : "direct";
+    switch (strategy) {
+        case Strategy::automatic:
+            return "auto";
+        case Strategy::grid:
+            return "grid";
+        case Strategy::cache:
+            return "cache";
+        case Strategy::direct:
+            break;
+    }
+    return "direct";
 }
 
 Options parse_options(int argc, const char* const* argv, std::string& help) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "estara/render/image_queue.h"
@@ -24,10 +25,29 @@ bool is_finished(const Options& options, int frame) {
     });
 }
 
+/// The number of the window that a frame is in (Options::window).
+int window_of(const Options& options, int frame) {
+    const int from_first = frame - 1;
+    return (from_first >= 0 ? from_first : from_first - options.window + 1) / options.window;
+}
+
+/// With --resume, those that are not finished; of a strategy that may use the cache whole windows,
+/// because a frame's hit points are those of the frames before it.
 std::vector<int> frames_to_render(const Options& options, const FrameRange& range) {
+    const bool may_cache =
+        options.strategy == Strategy::cache || options.strategy == Strategy::automatic;
+    std::vector<int> missing;
+    for (int i = 0; i < range.count(); ++i) {
+        if (!options.resume || !is_finished(options, range.at(i))) missing.push_back(range.at(i));
+    }
+    if (!options.resume || !may_cache) return missing;
     std::vector<int> frames;
     for (int i = 0; i < range.count(); ++i) {
-        if (!options.resume || !is_finished(options, range.at(i))) frames.push_back(range.at(i));
+        const int window = window_of(options, range.at(i));
+        if (std::any_of(missing.begin(), missing.end(),
+                        [&](int m) { return window_of(options, m) == window; })) {
+            frames.push_back(range.at(i));
+        }
     }
     return frames;
 }
@@ -64,7 +84,8 @@ public:
         : m_options(options),
           m_wardrobe(wardrobe),
           m_camera(camera),
-          m_renderer(scene, rays, options.frame) {}
+          m_renderer(scene, rays, options.frame),
+          m_cache(make_cache(scene, options, wardrobe.chosen)) {}
 
     std::vector<FrameRecord> render(const std::vector<int>& frames) {
         std::vector<FrameRecord> records;
@@ -91,7 +112,10 @@ private:
         for (const FilePattern& output : m_options.outputs) {
             record.files.push_back(output.path(frame));
         }
-        record.cost = m_renderer.render(m_wardrobe.chosen, m_camera, time, film, tile_done);
+        if (m_cache && (!m_window || *m_window != window_of(m_options, frame))) m_cache->clear();
+        m_window = window_of(m_options, frame);
+        record.cost =
+            m_renderer.render(m_wardrobe.chosen, m_camera, time, film, tile_done, m_cache.get());
         if (m_options.compare_direct) {
             Film reference(m_options.frame.width, m_options.frame.height, m_options.frame.aovs);
             record.direct =
@@ -105,6 +129,8 @@ private:
     const Wardrobe& m_wardrobe;
     int m_camera;
     FrameRenderer m_renderer;
+    std::unique_ptr<ReuseCache> m_cache;  ///< null: nothing is cached
+    std::optional<int> m_window;          ///< of the last frame
 };
 
 }  // namespace
@@ -138,7 +164,7 @@ RunRecord run(const Options& options, Scene scene, const Say& say) {
 
     if (!frames.empty()) {
         RayScene rays(scene);
-        const Wardrobe wardrobe = dress(scene, rays, options, camera, say);
+        const Wardrobe wardrobe = dress(scene, rays, options, camera, frames, say);
         record.objects = wardrobe.records;
         record.frames = Animation(options, scene, rays, wardrobe, camera).render(frames);
     }

@@ -18,19 +18,41 @@ float wrapped(double x) noexcept {
     return f < 1.0f ? f : 0.0f;
 }
 
+/// Multiples of the two numbers of the R2 sequence (powers of 1/1.3247...): seeds spread evenly.
+glm::dvec2 shift_of(int spp, std::uint32_t seed) noexcept {
+    if (spp == 1) return glm::dvec2(0.0);
+    return {seed * 0.7548776662466927, seed * 0.5698402909980532};
+}
+
+/// Sample i of a pattern that is not shifted.
+glm::dvec2 hammersley(int i, int spp) noexcept {
+    return {(i + 0.5) / spp, radical_inverse(std::uint32_t(i)) + 0.5 / spp};
+}
+
 }  // namespace
 
 std::vector<glm::vec2> sample_pattern(int spp, std::uint32_t seed) {
-    if (spp == 1) return {glm::vec2(0.5f)};
-    // Multiples of the two numbers of the R2 sequence (powers of 1/1.3247...): seeds spread evenly.
-    const double shift_x = seed * 0.7548776662466927, shift_y = seed * 0.5698402909980532;
+    const glm::dvec2 shift = shift_of(spp, seed);
     std::vector<glm::vec2> pattern(static_cast<std::size_t>(spp));
     for (int i = 0; i < spp; ++i) {
-        const double x = (i + 0.5) / spp;
-        const double y = radical_inverse(std::uint32_t(i)) + 0.5 / spp;
-        pattern[std::size_t(i)] = {wrapped(x + shift_x), wrapped(y + shift_y)};
+        const glm::dvec2 p = hammersley(i, spp) + shift;
+        pattern[std::size_t(i)] = {wrapped(p.x), wrapped(p.y)};
     }
     return pattern;
+}
+
+SampleStrata::SampleStrata(int spp, std::uint32_t seed) : m_columns(spp), m_rows(1) {
+    while (m_columns % 2 == 0 && m_columns > m_rows) {
+        m_columns /= 2;
+        m_rows *= 2;
+    }
+    const glm::dvec2 shift = shift_of(spp, seed);
+    m_shift = {wrapped(shift.x), wrapped(shift.y)};
+    m_sample.resize(std::size_t(spp));
+    for (int i = 0; i < spp; ++i) {
+        const glm::ivec2 cell(hammersley(i, spp) * glm::dvec2(m_columns, m_rows));
+        m_sample[std::size_t(cell.y * m_columns + cell.x)] = i;
+    }
 }
 
 }  // namespace estara

@@ -29,18 +29,28 @@ Json json_of(const ImageError& e) {
     return {{"rmse", e.rmse}, {"p99.9", e.p999}, {"max", e.max}, {"psnr", e.psnr}};
 }
 
+Json json_of(const ReuseCounts& r) {
+    return {{"seconds", r.seconds},   {"hits", r.hits},       {"misses", r.misses},
+            {"occluded", r.occluded}, {"turned", r.turned},   {"refilled", r.refilled},
+            {"kept", r.kept},         {"refused", r.refused}, {"evicted", r.evicted},
+            {"records", r.records},   {"bytes", r.bytes},     {"table_bytes", r.table_bytes}};
+}
+
 Json json_of(const FrameStatistics& s) {
-    return {{"seconds", s.seconds},
-            {"evaluation_seconds", s.evaluation_seconds},
-            {"view_seconds", s.view_seconds},
-            {"ray_seconds", s.ray_seconds},
-            {"primary_rays", s.primary_rays},
-            {"shadow_rays", s.shadow_rays},
-            {"samples", s.samples},
-            {"lookups", s.lookups},
-            {"irradiance_lookups", s.irradiance_lookups},
-            {"misses", s.misses},
-            {"bad_pixels", s.bad_pixels}};
+    Json json{{"seconds", s.seconds},
+              {"evaluation_seconds", s.evaluation_seconds},
+              {"light_seconds", s.light_seconds},
+              {"view_seconds", s.view_seconds},
+              {"ray_seconds", s.ray_seconds},
+              {"primary_rays", s.primary_rays},
+              {"shadow_rays", s.shadow_rays},
+              {"samples", s.samples},
+              {"lookups", s.lookups},
+              {"irradiance_lookups", s.irradiance_lookups},
+              {"misses", s.misses},
+              {"bad_pixels", s.bad_pixels}};
+    if (s.reuse.table_bytes > 0) json["cache"] = json_of(s.reuse);
+    return json;
 }
 
 Json json_of(const ObjectRecord& o) {
@@ -54,6 +64,14 @@ Json json_of(const ObjectRecord& o) {
         json["voxel_size"] = o.voxel_size;
         json["levels"] = o.levels;
         json["grid_bytes"] = o.grid_bytes;
+    }
+    if (o.choice && o.choice->samples > 0) {
+        const StrategyChoice& c = *o.choice;
+        json["measured"] = {
+            {"vi_seconds", c.times.vi},           {"vd_seconds", c.times.vd},
+            {"lookup_seconds", c.lookup},         {"save_seconds", c.times.save},
+            {"extract_seconds", c.times.extract}, {"frames_a_point_serves", c.frames},
+            {"predicted_speedup", c.speedup},     {"samples", c.samples}};
     }
     return json;
 }
@@ -87,6 +105,8 @@ Json settings_json(const RunRecord& run) {
               {"outputs", outputs},
               {"grids", o.grids},
               {"strategy", to_string(o.strategy)},
+              {"cache_memory", o.cache_memory},
+              {"window", o.window},
               {"frames",
                {{"first", run.range.first}, {"last", run.range.last}, {"step", run.range.step}}},
               {"fps", o.fps},

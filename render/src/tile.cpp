@@ -13,9 +13,6 @@ namespace {
 /// or not: a light's error is at most this, a quarter of an 8-bit picture's darkest step.
 constexpr float negligible_gloss = 0x1p-14f;
 
-/// Squares of lengths for which float does.
-constexpr float least_square = 1e-30f, largest_square = 1e30f;
-
 /// v / |v|, or `otherwise` for a vector without direction.
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
     const double length = glm::length(glm::dvec3(v));
@@ -23,18 +20,6 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
 }
 
 ESTARA_KERNEL bool is_finite(float v) noexcept { return v - v == 0.0f; }
-
-template <class T>
-ESTARA_KERNEL glm::vec3 at(const T& planes, int i) noexcept {
-    return {planes[0][i], planes[1][i], planes[2][i]};
-}
-
-template <class T>
-ESTARA_KERNEL void put(T& planes, int i, const glm::vec3& v) noexcept {
-    planes[0][i] = v.x;
-    planes[1][i] = v.y;
-    planes[2][i] = v.z;
-}
 
 /// First float of the channel "color" in a baked record, or -1.
 int color_offset(const ShaderInfo& info) noexcept {
@@ -52,21 +37,39 @@ const ObjectShading& TileRenderer::shading_of(const FrameContext& frame, const G
     return frame.shading[std::size_t(frame.instances[group.instance].object)];
 }
 
-void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, Film& film) {
+ObjectCost& TileRenderer::cost_of(const FrameContext& frame, const Group& group) {
+    if (statistics.objects.empty()) statistics.objects.resize(frame.shading.size());
+    return statistics.objects[std::size_t(frame.instances[group.instance].object)];
+}
+
+void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, Film& film,
+                          NewRecords& found) {
     list_pixels(frame, corner);
     clear_sums(frame.settings.aovs);
-    for (const glm::vec2& offset : frame.pattern) {
-        trace(frame, offset);
+    for (std::size_t sample = 0; sample < frame.pattern.size(); ++sample) {
+        if (frame.reuse != nullptr) {
+            recall(frame, int(sample));
+        } else {
+            std::fill_n(m_needs_ray, m_pixels.size(), 1);
+        }
+        trace(frame, frame.pattern[sample]);
         group_by_instance(frame);
+        if (frame.reuse != nullptr) add_recalled_groups();
+        m_samples.surface.size = m_count;
+        statistics.samples += std::uint64_t(m_count);
         if (m_count == 0) continue;
+        m_sides.assign((frame.lights.size() / 32 + 1) * capacity, 0);
         for (const Group& group : m_groups) {
-            place_on_surface(frame, group);
-            evaluate(frame, group);
-            look_up_irradiance(frame, group);
+            if (group.recalled) {
+                shade_recalled(frame, group);
+            } else {
+                shade_new(frame, group, found);
+            }
         }
         std::fill_n(m_samples.Ci[0], 3 * capacity, 0.0f);
-        for (const PosedLight& source : frame.lights) light(frame, source);
+        for (std::size_t l = 0; l < frame.lights.size(); ++l) light(frame, int(l));
         close(frame);
+        if (frame.reuse != nullptr) keep_light(frame, found);
         accumulate(frame);
     }
     resolve(frame, film);
@@ -74,7 +77,9 @@ void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, F
 
 void TileRenderer::clear_sums(const Aovs& wanted) {
     std::fill_n(m_sums.color[0], 3 * capacity, 0.0f);
-    std::fill_n(m_sums.hits, capacity, 0);
+    for (int* counts : {m_sums.hits, m_sums.recalled, m_sums.age, m_sums.occluded}) {
+        std::fill_n(counts, capacity, 0);
+    }
     if (!wanted.any()) return;
     for (Planes* planes : {&m_sums.albedo, &m_sums.N, &m_sums.P}) {
         std::fill_n((*planes)[0], 3 * capacity, 0.0f);
@@ -97,50 +102,71 @@ void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corn
 
 void TileRenderer::trace(const FrameContext& frame, const glm::vec2& offset) {
     const Stopwatch time;
+    m_ray_count = 0;
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        m_x[i] = float(m_pixels[i].x) + offset.x;
-        m_y[i] = float(m_pixels[i].y) + offset.y;
+        if (m_needs_ray[i] == 0) continue;
+        m_x[m_ray_count] = float(m_pixels[i].x) + offset.x;
+        m_y[m_ray_count] = float(m_pixels[i].y) + offset.y;
+        m_ray_pixel[m_ray_count++] = int(i);
     }
-    frame.camera.primary_rays(m_x, m_y, int(m_pixels.size()), m_rays);
+    frame.camera.primary_rays(m_x, m_y, m_ray_count, m_rays);
     frame.rays.intersect(m_rays, m_hits);
-    statistics.primary_rays += m_pixels.size();
+    statistics.primary_rays += std::uint64_t(m_ray_count);
     statistics.ray_seconds += time.seconds();
 }
 
-// A counting sort over the instances that this tile hits, in the order of their first hit.
 void TileRenderer::group_by_instance(const FrameContext& frame) {
+    m_groups.clear();
+    m_count = sort_by_instance(frame, m_hits.instance, m_ray_count, m_groups, m_order);
+}
+
+// A counting sort, in the order in which instances come first.
+int TileRenderer::sort_by_instance(const FrameContext& frame, const std::uint32_t* instances,
+                                   int count, std::vector<Group>& groups, int* order) {
     if (m_group_of_instance.size() != frame.instances.size()) {
         m_group_of_instance.assign(frame.instances.size(), -1);
     }
-    m_groups.clear();
-    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        if (m_hits.instance[i] == Hit::none) continue;
-        int& group = m_group_of_instance[m_hits.instance[i]];
+    for (int i = 0; i < count; ++i) {
+        if (instances[i] == Hit::none) continue;
+        int& group = m_group_of_instance[instances[i]];
         if (group < 0) {
-            group = int(m_groups.size());
-            m_groups.push_back({m_hits.instance[i], 0, 0});
+            group = int(groups.size());
+            groups.push_back({instances[i], 0, 0, false});
         }
-        ++m_groups[std::size_t(group)].last;
+        ++groups[std::size_t(group)].last;
     }
-    m_count = 0;
-    for (Group& group : m_groups) {
+    int sorted = 0;
+    for (Group& group : groups) {
         const int size = group.last;
-        group.first = group.last = m_count;
-        m_count += size;
+        group.first = group.last = sorted;
+        sorted += size;
     }
-    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        if (m_hits.instance[i] == Hit::none) continue;
-        Group& group = m_groups[std::size_t(m_group_of_instance[m_hits.instance[i]])];
-        m_order[group.last++] = int(i);
+    for (int i = 0; i < count; ++i) {
+        if (instances[i] == Hit::none) continue;
+        order[groups[std::size_t(m_group_of_instance[instances[i]])].last++] = i;
     }
-    for (const Group& group : m_groups) m_group_of_instance[group.instance] = -1;
-    m_samples.surface.size = m_count;
-    statistics.samples += std::uint64_t(m_count);
+    for (const Group& group : groups) m_group_of_instance[group.instance] = -1;
+    return sorted;
 }
 
-void TileRenderer::place_on_surface(const FrameContext& frame, const Group& group) {
-    const PosedInstance& instance = frame.instances[group.instance];
+void TileRenderer::shade_new(const FrameContext& frame, const Group& group, NewRecords& found) {
     interpolate(frame, group);
+    place_in_world(frame, group);
+    evaluate(frame, group);
+    take_normals(frame, group);
+    turn_normals(frame.instances[group.instance], group);
+    look_up_irradiance(frame, group);
+    std::fill(m_samples.kept + group.first, m_samples.kept + group.last, 0);
+    std::fill(m_samples.age + group.first, m_samples.age + group.last, -1);
+    std::fill(m_row + group.first, m_row + group.last, -1);
+    statistics.lit += std::uint64_t(group.last - group.first);
+    if (frame.reuse != nullptr && shading_of(frame, group).cached) keep(frame, group, found);
+    turn_directions(frame, group);
+}
+
+/// World space: P, V and the distance to the eye.
+void TileRenderer::place_in_world(const FrameContext& frame, const Group& group) {
+    const PosedInstance& instance = frame.instances[group.instance];
     wide([samples = &m_samples, group, m = instance.world_from_object]() ESTARA_LOOP {
         const glm::vec3 x(m[0]), y(m[1]), z(m[2]), shift(m[3]);
 #pragma GCC ivdep
@@ -151,7 +177,6 @@ void TileRenderer::place_on_surface(const FrameContext& frame, const Group& grou
     });
     frame.camera.sights(m_samples.P[0], group.first, group.last, m_samples.seen.V,
                         m_samples.distance);
-    turn_normals(instance, group);
 }
 
 /// Object space: mesh_point() for every sample, with the normals left for a wide loop.
@@ -173,7 +198,7 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
         const int last = std::min(first + ahead, group.last);
         for (int j = first; j < last; ++j) {
             const int i = m_order[j];
-            m_samples.pixel[j] = i;
+            m_samples.pixel[j] = m_ray_pixel[i];
             __builtin_prefetch(&mesh.triangles[m_hits.triangle[i]]);
             __builtin_prefetch(&Ng[m_hits.triangle[i]]);
         }
@@ -263,11 +288,48 @@ void TileRenderer::turn_normals(const PosedInstance& instance, const Group& grou
     }
 }
 
+void TileRenderer::reserve_planes(const ShaderInfo& info) {
+    const std::size_t floats = std::size_t(info.baked_floats) * capacity;
+    if (m_planes.size() < floats) m_planes.resize(floats);
+}
+
+/// A shader's own normal takes the place of the mesh's.
+void TileRenderer::take_normals(const FrameContext& frame, const Group& group) {
+    const ShaderInfo& info = shading_of(frame, group).shader->info();
+    if (info.channels.empty() || info.channels.back().kind != ChannelKind::normal) return;
+    for (int c = 0; c < 3; ++c) {
+        const float* const from = m_planes.data() + (info.baked_floats - 3 + c) * capacity;
+        std::copy(from + group.first, from + group.last, m_samples.surface.N[c] + group.first);
+    }
+}
+
+/// Of the planes, the directions to world space.
+void TileRenderer::turn_directions(const FrameContext& frame, const Group& group) {
+    int plane = 0;
+    for (const ChannelInfo& channel : shading_of(frame, group).shader->info().channels) {
+        const int first = plane;
+        plane += channel.components;
+        if (channel.kind != ChannelKind::direction) continue;
+        float* const x = m_planes.data() + first * capacity;
+        wide([=, m = glm::mat3(frame.instances[group.instance].world_from_object)]() ESTARA_LOOP {
+#pragma GCC ivdep
+            for (int j = group.first; j < group.last; ++j) {
+                const glm::vec3 v = m * glm::vec3(x[j], x[capacity + j], x[2 * capacity + j]);
+                const float square = glm::dot(v, v);
+                const bool usual = (square > least_square) & (square < largest_square);
+                const float scale = 1.0f / std::sqrt(usual ? square : 1.0f);
+                x[j] = v.x * scale;
+                x[capacity + j] = v.y * scale;
+                x[2 * capacity + j] = v.z * scale;
+            }
+        });
+    }
+}
+
 /// Fills m_planes, rows by sample.
 void TileRenderer::evaluate(const FrameContext& frame, const Group& group) {
     const ObjectShading& shading = shading_of(frame, group);
-    const std::size_t floats = std::size_t(shading.shader->info().baked_floats) * capacity;
-    if (m_planes.size() < floats) m_planes.resize(floats);
+    reserve_planes(shading.shader->info());
     const Stopwatch time;
     if (shading.pyramid) {
         look_up(frame, group, shading);
@@ -275,7 +337,11 @@ void TileRenderer::evaluate(const FrameContext& frame, const Group& group) {
         m_samples.surface.filter_width = shading.filter_width;
         shading.shader->bake(m_samples.surface, group.first, group.last, m_planes.data());
     }
-    statistics.evaluation_seconds += time.seconds();
+    const double seconds = time.seconds();
+    statistics.evaluation_seconds += seconds;
+    ObjectCost& cost = cost_of(frame, group);
+    cost.evaluation += seconds;
+    cost.evaluated += std::uint64_t(group.last - group.first);
 }
 
 // The footprint is the minor axis of what a sample covers: at grazing angles it is not divided by
@@ -351,8 +417,11 @@ void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& gr
 }
 
 /// Adds what one light sends to the eye from every sample.
-void TileRenderer::light(const FrameContext& frame, const PosedLight& light) {
+void TileRenderer::light(const FrameContext& frame, int number) {
+    const PosedLight& light = frame.lights[std::size_t(number)];
+    const Stopwatch time;
     for (const Group& group : m_groups) reach_samples(frame, group, light);
+    statistics.light_seconds += time.seconds();
     view(frame, true, m_reach.gloss);
     if (light.shadow && frame.settings.shadows) {
         want_shadows(frame);
@@ -360,7 +429,26 @@ void TileRenderer::light(const FrameContext& frame, const PosedLight& light) {
     } else {
         std::fill_n(m_reach.visible, m_count, 1);
     }
+    const Stopwatch sum;
+    if (frame.reuse != nullptr) recall_visibility(number);
     add_light();
+    statistics.light_seconds += sum.seconds();
+}
+
+/// Recalled samples are told whether the light is visible, the others tell.
+void TileRenderer::recall_visibility(int light) {
+    const int place = light + 1;  // the first bit is the side of the point itself
+    std::uint32_t* const words = m_sides.data() + place / 32 * capacity;
+    wide([=, samples = &m_samples, reach = &m_reach, count = m_count, bit = place % 32]()
+             ESTARA_LOOP {
+#pragma GCC ivdep
+                 for (int j = 0; j < count; ++j) {
+                     const int recalled = int(words[j] >> bit & 1u);
+                     const int visible = samples->kept[j] != 0 ? recalled : reach->visible[j];
+                     reach->visible[j] = visible;
+                     words[j] |= std::uint32_t(visible) << bit;
+                 }
+             });
 }
 
 void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
@@ -399,7 +487,8 @@ void TileRenderer::want_shadows(const FrameContext& frame) {
             const bool glossy = !((std::fabs(gloss.x) <= least) & (std::fabs(gloss.y) <= least) &
                                   (std::fabs(gloss.z) <= least));
             const bool reached = (Cl.x > 0.0f) | (Cl.y > 0.0f) | (Cl.z > 0.0f);
-            reach->wanted[j] = reached & (glossy | (samples->baked_E[j] == 0)) ? 1 : 0;
+            const bool open = (samples->kept[j] == 0) & (glossy | (samples->baked_E[j] == 0));
+            reach->wanted[j] = reached & open ? 1 : 0;
         }
     });
 }
@@ -415,7 +504,9 @@ void TileRenderer::trace_shadows(const FrameContext& frame, const PosedLight& li
     const Stopwatch time;
     frame.rays.occluded(m_rays, m_blocked.data());
     statistics.shadow_rays += std::uint64_t(m_rays.size);
-    statistics.ray_seconds += time.seconds();
+    const double seconds = time.seconds();
+    statistics.ray_seconds += seconds;
+    statistics.shadow_seconds += seconds;
     for (int r = 0; r < m_rays.size; ++r) {
         m_reach.visible[m_shadow_sample[r]] = m_blocked[std::size_t(r)] ? 0 : 1;
     }
@@ -448,12 +539,14 @@ void TileRenderer::close(const FrameContext& frame) {
 }
 
 void TileRenderer::view(const FrameContext& frame, bool lit, Planes& Ci) {
-    const Stopwatch time;
     for (const Group& group : m_groups) {
+        const Stopwatch time;
         shading_of(frame, group)
             .shader->view(m_planes.data(), m_samples.seen, group.first, group.last, lit, Ci[0]);
+        const double seconds = time.seconds();
+        statistics.view_seconds += seconds;
+        cost_of(frame, group).view += seconds;
     }
-    statistics.view_seconds += time.seconds();
 }
 
 void TileRenderer::accumulate(const FrameContext& frame) {
@@ -469,6 +562,8 @@ void TileRenderer::accumulate(const FrameContext& frame) {
         const int albedo = color_offset(shading_of(frame, group).shader->info());
         for (int j = group.first; j < group.last; ++j) {
             const int pixel = s.pixel[j];
+            m_sums.recalled[pixel] += s.age[j] >= 0 ? 1 : 0;
+            m_sums.age[pixel] += s.age[j] >= 0 ? s.age[j] : 0;
             m_sums.depth[pixel] += s.distance[j];
             for (int c = 0; c < 3; ++c) {
                 m_sums.N[c][pixel] += s.seen.N[c][j];
@@ -491,6 +586,9 @@ void TileRenderer::resolve(const FrameContext& frame, Film& film) {
         if (film.aovs.normal) film.N[to] = glm::vec3(0.0f);
         if (film.aovs.position) film.P[to] = glm::vec3(0.0f);
         if (film.aovs.depth) film.depth[to] = 0.0f;
+        if (film.aovs.hit) film.hit[to] = 0.0f;
+        if (film.aovs.age) film.age[to] = 0.0f;
+        if (film.aovs.occluded) film.occluded[to] = float(m_sums.occluded[i]) / samples;
         if (m_sums.hits[i] == 0) continue;
         const float hits = float(m_sums.hits[i]);
         glm::vec3 color = at(m_sums.color, p) * scale;
@@ -507,6 +605,8 @@ void TileRenderer::resolve(const FrameContext& frame, Film& film) {
         if (film.aovs.normal) film.N[to] = at(m_sums.N, p) / hits;
         if (film.aovs.position) film.P[to] = at(m_sums.P, p) / hits;
         if (film.aovs.depth) film.depth[to] = m_sums.depth[i] / hits;
+        if (film.aovs.hit) film.hit[to] = float(m_sums.recalled[i]) / samples;
+        if (film.aovs.age) film.age[to] = float(m_sums.age[i]) / hits;
     }
 }
 

@@ -12,8 +12,25 @@
 #include "estara/render/frame.h"
 #include "estara/shaders/batch.h"
 #include "instances.h"
+#include "reprojection.h"
 
 namespace estara {
+
+/// Squares of lengths for which float does.
+constexpr float least_square = 1e-30f, largest_square = 1e30f;
+
+/// Point i of three planes.
+template <class T>
+ESTARA_KERNEL glm::vec3 at(const T& planes, int i) noexcept {
+    return {planes[0][i], planes[1][i], planes[2][i]};
+}
+
+template <class T>
+ESTARA_KERNEL void put(T& planes, int i, const glm::vec3& v) noexcept {
+    planes[0][i] = v.x;
+    planes[1][i] = v.y;
+    planes[2][i] = v.z;
+}
 
 /// What all tiles of a frame share.
 struct FrameContext {
@@ -26,6 +43,7 @@ struct FrameContext {
     std::span<const std::vector<glm::vec3>> face_normals;  ///< by object
     std::span<const glm::vec2> pattern;
     FrameSettings settings;
+    const Reprojection* reuse;  ///< null: every sample is a new ray
 };
 
 /// Renders tiles one after the other; one per thread. Its memory grows to what a tile needs and is
@@ -39,7 +57,8 @@ public:
     static_assert(width * height == capacity);
 
     /// Renders the pixels from `corner` on and writes them to the film.
-    void render(const FrameContext& frame, const glm::ivec2& corner, Film& film);
+    /// @param found  what the cache is to be given of this tile; not touched without reuse
+    void render(const FrameContext& frame, const glm::ivec2& corner, Film& film, NewRecords& found);
 
     FrameStatistics statistics;  ///< of everything rendered since it was last reset
 
@@ -47,12 +66,23 @@ private:
     using Plane = float[capacity];
     using Planes = float[3][capacity];
 
-    /// Samples [first, last) lie on one instance.
+    /// Samples [first, last) lie on one instance; they are new hits, or come from the cache.
     struct Group {
         std::uint32_t instance;
         int first, last;
+        bool recalled;
     };
-    /// The hits of a pass, ordered by group.
+    /// Points of the cache that may stand in for samples of a pass, ordered by instance.
+    struct alignas(64) Candidates {
+        int pixel[capacity];
+        RayId id[capacity];
+        const float* record[capacity];
+        int was_hidden[capacity];
+        int was_front[capacity];  ///< -1: seen from any side
+        Planes P_object, Ng_object;
+        int usable[capacity];  ///< 1: seen from the side from which it was shaded
+    };
+    /// The samples of a pass, ordered by group.
     struct alignas(64) Samples {
         int pixel[capacity];    ///< index into m_pixels
         SurfaceBatch surface;   ///< object space
@@ -62,7 +92,9 @@ private:
         Plane distance;         ///< to the eye, world units
         int front[capacity];    ///< 1: seen from the side that Ng points to on the mesh
         SeenBatch seen;         ///< E is added up light by light
-        int baked_E[capacity];  ///< 1: E was looked up, shadows and all
+        int baked_E[capacity];  ///< 1: E was looked up or recalled, shadows and all
+        int kept[capacity];     ///< 1: so is which lights are visible
+        int age[capacity];      ///< frames since the point was found; -1: a new ray
         Planes Ci;              ///< added up light by light
     };
     /// One light as it reaches the samples.
@@ -78,13 +110,28 @@ private:
         Planes color, albedo, N, P;
         Plane depth;
         int hits[capacity];
+        int recalled[capacity], age[capacity], occluded[capacity];
     };
 
     void clear_sums(const Aovs& wanted);
     void list_pixels(const FrameContext& frame, const glm::ivec2& corner);
+    void recall(const FrameContext& frame, int sample);
+    void list_candidates(const FrameContext& frame, int sample);
+    void aim_at_candidates(const FrameContext& frame);
+    void take_visible(const FrameContext& frame);
     void trace(const FrameContext& frame, const glm::vec2& offset);
     void group_by_instance(const FrameContext& frame);
-    void place_on_surface(const FrameContext& frame, const Group& group);
+    int sort_by_instance(const FrameContext& frame, const std::uint32_t* instances, int count,
+                         std::vector<Group>& groups, int* order);
+    void reserve_planes(const ShaderInfo& info);
+    void add_recalled_groups();
+    void shade_new(const FrameContext& frame, const Group& group, NewRecords& found);
+    void shade_recalled(const FrameContext& frame, const Group& group);
+    void keep(const FrameContext& frame, const Group& group, NewRecords& found);
+    void keep_light(const FrameContext& frame, NewRecords& found);
+    void take_normals(const FrameContext& frame, const Group& group);
+    void turn_directions(const FrameContext& frame, const Group& group);
+    void place_in_world(const FrameContext& frame, const Group& group);
     void interpolate(const FrameContext& frame, const Group& group);
     MeshPoint mesh_point_of(const FrameContext& frame, const Group& group, int j) const;
     void turn_normals(const PosedInstance& instance, const Group& group);
@@ -92,26 +139,37 @@ private:
     void look_up(const FrameContext& frame, const Group& group, const ObjectShading& shading);
     void look_up_irradiance(const FrameContext& frame, const Group& group);
     void find_footprints(const FrameContext& frame, const Group& group);
-    void light(const FrameContext& frame, const PosedLight& light);
+    void light(const FrameContext& frame, int number);
     void reach_samples(const FrameContext& frame, const Group& group, const PosedLight& light);
     void want_shadows(const FrameContext& frame);
     void trace_shadows(const FrameContext& frame, const PosedLight& light);
+    void recall_visibility(int light);
     void add_light();
     void close(const FrameContext& frame);
     void view(const FrameContext& frame, bool lit, Planes& Ci);
     void accumulate(const FrameContext& frame);
     void resolve(const FrameContext& frame, Film& film);
     const ObjectShading& shading_of(const FrameContext& frame, const Group& group) const;
+    ObjectCost& cost_of(const FrameContext& frame, const Group& group);
 
     std::vector<glm::ivec2> m_pixels;
     PixelSums m_sums;
-    Plane m_x, m_y;  ///< where the pixels' rays go through the image
+    int m_needs_ray[capacity];  ///< by pixel; 1 or 0
+    int m_ray_pixel[capacity];  ///< of each primary ray
+    int m_ray_count = 0;
+    Plane m_x, m_y;  ///< where the rays go through the image
     RayBatch m_rays;
     HitBatch m_hits;
     std::vector<int> m_group_of_instance;  ///< -1: not hit in this tile
     std::vector<Group> m_groups;
-    int m_order[capacity];  ///< hit of each sample
+    int m_order[capacity];  ///< hit of each sample, or candidate of a recalled one
     int m_count = 0;        ///< samples
+    Candidates m_candidates;
+    std::vector<Group> m_candidate_groups;
+    int m_candidate_count = 0;
+    int m_candidate_order[capacity];     ///< of the visible ones
+    std::vector<std::uint32_t> m_sides;  ///< RecordLayout's words, by sample in each
+    std::ptrdiff_t m_row[capacity];      ///< of a sample in NewRecords::floats, or -1
     Samples m_samples;
     Reach m_reach;
     int m_shadow_sample[capacity];  ///< of each shadow ray

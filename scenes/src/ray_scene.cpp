@@ -78,19 +78,6 @@ ScenePtr mesh_scene(const Object& object, const std::string& where) {
     return scene;
 }
 
-/// Whether Embree can take rays to object space and back: no axis has collapsed, nothing overflows.
-bool invertible(const glm::mat4& world_from_object) noexcept {
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 3; ++r)
-            if (!std::isfinite(world_from_object[c][r])) return false;
-    const glm::dvec3 x(world_from_object[0]), y(world_from_object[1]), z(world_from_object[2]);
-    const double volume = std::abs(glm::dot(glm::cross(x, y), z));
-    // Axes turned into one plane leave a volume of rounding errors, 1e-7 of their lengths' product.
-    constexpr double flat = 1e-6;
-    if (!(volume > flat * glm::length(x) * glm::length(y) * glm::length(z))) return false;
-    return std::isnormal(float(volume));  // Embree divides by it in float
-}
-
 /// What Embree cannot be told of a batch's rays, and what it must be told in its own way.
 struct alignas(64) Prepared {
     int valid[batch_capacity];    ///< -1 or 0: the ray can hit something; no NaN anywhere
@@ -210,7 +197,7 @@ struct RayScene::Impl {
 
     void move(std::size_t i, const glm::mat4& world_from_object) {
         const RTCGeometry geometry = instances[i].get();
-        if (!invertible(world_from_object)) return rtcDisableGeometry(geometry);
+        if (!can_be_hit(world_from_object)) return rtcDisableGeometry(geometry);
         rtcEnableGeometry(geometry);
         rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
                                 glm::value_ptr(world_from_object));
@@ -224,6 +211,18 @@ struct RayScene::Impl {
         check_embree(scene.path);
     }
 };
+
+bool can_be_hit(const glm::mat4& world_from_object) noexcept {
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 3; ++r)
+            if (!std::isfinite(world_from_object[c][r])) return false;
+    const glm::dvec3 x(world_from_object[0]), y(world_from_object[1]), z(world_from_object[2]);
+    const double volume = std::abs(glm::dot(glm::cross(x, y), z));
+    // Axes turned into one plane leave a volume of rounding errors, 1e-7 of their lengths' product.
+    constexpr double flat = 1e-6;
+    if (!(volume > flat * glm::length(x) * glm::length(y) * glm::length(z))) return false;
+    return std::isnormal(float(volume));  // Embree divides by it in float
+}
 
 RayScene::RayScene(const Scene& scene) : m_impl(std::make_unique<Impl>(scene)) {
     m_impl->set_pose(pose_at(scene, 0.0));

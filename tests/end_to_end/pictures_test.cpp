@@ -105,7 +105,8 @@ TEST_P(Pictures, OfDefaultGridsAreThoseOfDirectEvaluation) {
         grids += " --grids " + file;
     }
     done_in(m_folder,
-            "estara-render '" + scene + "'" + grids + " --frames " + GetParam().frames +
+            "estara-render --strategy grid '" + scene + "'" + grids + " --frames " +
+                GetParam().frames +
                 " --resolution 320x180 --aov P --aov depth -o 'f/####.exr' -o 'f/%04d.png'"
                 " --compare direct --stats stats.json --progress none");
 

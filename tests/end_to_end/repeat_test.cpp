@@ -25,7 +25,9 @@ protected:
     }
 
     std::string render(const std::string& options) const {
-        return done_in(m_folder, "estara-render tumble.glb" + small + options);
+        const bool chosen = options.find("--strategy") != std::string::npos;
+        return done_in(m_folder, "estara-render tumble.glb" + small + options +
+                                     (chosen ? "" : " --strategy grid"));
     }
     void expect_equal(const std::string& a, const std::string& b) const {
         EXPECT_EQ(test::difference(Image(m_folder / a), Image(m_folder / b)).max, 0.0)

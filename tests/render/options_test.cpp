@@ -27,7 +27,10 @@ TEST(Options, DefaultsAreThoseOfTheStruct) {
     const Options options = parse({"a.glb", "-o", "#.exr"});
     EXPECT_EQ(options.scene, "a.glb");
     ASSERT_EQ(options.outputs.size(), 1u);
-    EXPECT_EQ(options.strategy, Strategy::grid);
+    EXPECT_EQ(options.strategy, Strategy::automatic);
+    EXPECT_EQ(options.cache_memory, std::uint64_t{2} << 30);
+    EXPECT_EQ(options.window, 100);
+    EXPECT_FALSE(options.cache_light);
     EXPECT_EQ(options.frame.width, 640);
     EXPECT_EQ(options.frame.height, 360);
     EXPECT_EQ(options.frame.spp, 4);
@@ -68,32 +71,38 @@ TEST(Options, AreReadAsWritten) {
 TEST(Options, HelpShowsDefaultsAndEndsInTwoExamples) {
     std::string help;
     parse({"--help"}, &help);
-    for (const char* part : {"640x360", "Examples:", "--compare direct", "--strategy NAME=grid",
+    for (const char* part : {"640x360", "Examples:", "--compare direct", "--strategy NAME=auto", "--window N=100",
+                             "(default: 2.0 GiB)",
                              "--spp N=4", "--fps N=24", "--progress STYLE=auto"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part << " is not in\n" << help;
     }
     EXPECT_GT(help.find("Examples:"), help.find("--threads"));
 }
 
-TEST(Options, StrategiesNotBuiltYetSaySo) {
-    EXPECT_EQ(error_with({"--strategy", "cache"}),
-              "strategy 'cache' is not built yet: this version has grid and direct");
-    EXPECT_EQ(error_with({"--strategy", "auto"}),
-              "strategy 'auto' is not built yet: this version has grid and direct");
+TEST(Options, OfTheCacheAreReadAsWritten) {
+    const Options options = parse({"a.glb", "-o", "#.exr", "--strategy", "cache", "--window", "12",
+                                   "--cache-memory", "64M", "--cache-light", "off", "--aov", "hit",
+                                   "--aov", "age", "--aov", "occluded"});
+    EXPECT_EQ(options.strategy, Strategy::cache);
+    EXPECT_EQ(options.window, 12);
+    EXPECT_EQ(options.cache_memory, std::uint64_t{64} << 20);
+    EXPECT_EQ(options.cache_light, std::optional<bool>(false));
+    EXPECT_TRUE(options.frame.aovs.hit && options.frame.aovs.age && options.frame.aovs.occluded);
 }
 
 TEST(Options, WrongValuesSayWhatThereIs) {
-    EXPECT_EQ(error_with({"--strategy", "grd"}), "--strategy: no 'grd'; there are: grid, direct");
+    EXPECT_EQ(error_with({"--strategy", "grd"}), "--strategy: no 'grd'; there are: auto, grid, cache, direct");
     EXPECT_EQ(error_with({"--compare", "grid"}), "--compare: no 'grid'; there is: direct");
     EXPECT_EQ(error_with({"--compare", "direct", "--strategy", "direct"}),
               "--compare direct needs another strategy than direct to compare it with");
-    EXPECT_EQ(error_with({"--window", "5"}),
-              "--cache-memory and --window belong to strategy 'cache', which is not built yet");
+    EXPECT_EQ(error_with({"--window", "0"}), "--window 0: must be from 1 to 1048575");
+    EXPECT_EQ(error_with({"--cache-light", "maybe"}),
+              "--cache-light: no 'maybe'; there are: auto, on, off");
     EXPECT_EQ(error_with({"--ambient=-1,0,0"}), "--ambient -1,0,0: must not be negative");
     EXPECT_EQ(error_with({"--stats", "same.json", "--report", "./same.json"}),
               "--stats same.json and --report ./same.json are the same file");
     EXPECT_EQ(error_with({"--aov", "normal"}),
-              "--aov: no 'normal'; there are: albedo, N, P, depth");
+              "--aov: no 'normal'; there are: albedo, N, P, depth, hit, age, occluded");
     EXPECT_EQ(error_with({"--spp", "0"}), "--spp 0: must be from 1 to 65536");
     EXPECT_EQ(error_with({"--fps", "0"}), "--fps 0: must be above 0");
     EXPECT_EQ(error_with({"--fps", "nan"}), "--fps nan: must be above 0");

@@ -25,6 +25,7 @@ Options small(const std::string& output) {
     options.frame.width = 48;
     options.frame.height = 32;
     options.frame.spp = 1;
+    options.strategy = Strategy::grid;
     options.progress = ProgressStyle::none;
     return options;
 }
@@ -105,6 +106,57 @@ TEST(Run, ResumesWithTheFramesThatAreMissing) {
     const RunRecord nothing = run_quietly(options);
     EXPECT_EQ(result_line(nothing), "0 frames -> " + (folder / "#.exr") + ", " +
                                         (folder / "#.png") + ", 3 frames already there");
+}
+
+TEST(Run, ResumesWholeWindowsOfTheCache) {
+    const Folder folder;
+    Options options = small(folder / "#.exr");
+    options.frames = {1, 6, 1};
+    options.strategy = Strategy::cache;
+    options.window = 3;
+    run_quietly(options);
+    const std::string fifth = test::text_of(folder / "5.exr");
+    std::filesystem::remove(folder / "5.exr");
+    options.resume = true;
+    const RunRecord record = run_quietly(options);
+    ASSERT_EQ(record.frames.size(), 3u);  // 4 to 6: a frame's points are those of the ones before
+    EXPECT_EQ(record.frames[0].frame, 4);
+    EXPECT_EQ(test::text_of(folder / "5.exr"), fifth);
+}
+
+TEST(Run, GivesTheSamePicturesWindowByWindow) {
+    const Folder folder;
+    Options options = small(folder / "whole#.exr");
+    options.frames = {1, 4, 1};
+    options.strategy = Strategy::cache;
+    options.window = 2;
+    const RunRecord whole = run_quietly(options);
+    EXPECT_EQ(whole.frames[0].cost.reuse.hits, 0u);
+    EXPECT_GT(whole.frames[1].cost.reuse.hits, 0u);
+    EXPECT_EQ(whole.frames[2].cost.reuse.hits, 0u);  // the second window
+    options.outputs = {FilePattern(folder / "part#.exr")};
+    options.frames = {3, 4, 1};
+    run_quietly(options);
+    EXPECT_EQ(test::text_of(folder / "part4.exr"), test::text_of(folder / "whole4.exr"));
+}
+
+TEST(Run, ChoosesByMeasurementAndSaysWhy) {
+    const Folder folder;
+    Options options = small(folder / "#.exr");
+    options.frames = {1, 4, 1};
+    options.strategy = Strategy::automatic;
+    std::vector<std::string> said;
+    const RunRecord record = run_quietly(options, &said);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_EQ(said[0].substr(0, 12), "auto: wood: ");
+    EXPECT_NE(said[0].find("that depend on the view"), std::string::npos) << said[0];
+    ASSERT_TRUE(record.objects[0].choice);
+    EXPECT_EQ(record.objects[0].choice->chosen, record.objects[0].strategy);
+    EXPECT_GT(record.objects[0].choice->times.vi, 0.0);
+    options.frames = {1, 1, 1};  // one frame, no grid: there is nothing to choose
+    said.clear();
+    EXPECT_EQ(run_quietly(options, &said).objects[0].strategy, Strategy::direct);
+    EXPECT_EQ(said, std::vector<std::string>{});
 }
 
 TEST(Run, DoesNotTakeABrokenOrASmallerImageForDone) {

@@ -38,6 +38,8 @@ public:
     void sights(const float* P, int first, int last, ViewDirections& V,
                 float* distance) const noexcept;
 
+    const glm::vec3& eye() const noexcept { return m_pose.eye; }
+
     /// Angle between neighbouring pixels at the image centre, radians.
     float pixel_angle() const noexcept { return m_pose.pixel_angle(m_height); }
 

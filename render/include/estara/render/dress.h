@@ -2,14 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "estara/render/frame.h"
 #include "estara/render/options.h"
+#include "estara/render/reuse_model.h"
 #include "estara/render/textures.h"
 
 namespace estara {
+
+/// What strategy auto has measured of an object, and chosen (strategy.h).
+struct StrategyChoice {
+    Strategy chosen = Strategy::direct;
+    SampleTimes times;
+    double lookup = 0.0;        ///< seconds a sample from its grid; 0 without one
+    double frames = 1.0;        ///< that a point serves
+    double speedup = 1.0;       ///< of reuse over them, predicted
+    std::uint64_t samples = 0;  ///< that this was measured on; 0: not seen
+};
 
 /// For the user: how an object was rendered.
 struct ObjectRecord {
@@ -19,15 +32,24 @@ struct ObjectRecord {
     std::string grid_file;  ///< "" and 0 without a grid
     double voxel_size = 0.0;
     int levels = 0;
-    std::uint64_t grid_bytes = 0;  ///< in memory
+    std::uint64_t grid_bytes = 0;            ///< in memory
+    std::optional<StrategyChoice> choice{};  ///< with --strategy auto
 };
 
 /// By object.
 struct Wardrobe {
     std::vector<ObjectShading> chosen;  ///< as --strategy says
-    std::vector<ObjectShading> direct;  ///< the same without grids
+    std::vector<ObjectShading> direct;  ///< the same without grids and cache
     std::vector<ObjectRecord> records;
 };
+
+/// Whether the cache keeps light and shadows: as --cache-light says, or if only cameras move. Error
+/// if it is to and they change.
+bool keeps_light(const Scene& scene, const Options& options);
+
+/// A cache for the objects of `shading` that are cached; null if none is.
+std::unique_ptr<ReuseCache> make_cache(const Scene& scene, const Options& options,
+                                       const std::vector<ObjectShading>& shading);
 
 /// Puts --shader on the objects that wear none. Error for an unknown shader or parameter.
 void put_on(Scene& scene, const std::string& shader, const std::vector<Setting>& params);
@@ -38,7 +60,9 @@ void put_on(Scene& scene, const std::string& shader, const std::vector<Setting>&
 /// then have the same octaves. Without one it is direct_filter_widths(). `say` is told what stays
 /// without a grid, and the warnings of match_grids().
 /// @param camera  index into Scene::cameras
-Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera, const Say& say);
+/// @param frames  that will be rendered
+Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
+               const std::vector<int>& frames, const Say& say);
 
 /// Half the smallest footprint of a pixel on each object, at least 1/16384 of the object's
 /// diagonal; 1/512 of the diagonal for an object that is never seen. Object space, by object.

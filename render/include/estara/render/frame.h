@@ -10,6 +10,7 @@
 
 #include "estara/grids/bricks.h"
 #include "estara/render/film.h"
+#include "estara/render/reuse_cache.h"
 #include "estara/scenes/ray_scene.h"
 #include "estara/scenes/scene.h"
 
@@ -23,6 +24,7 @@ struct ObjectShading {
     /// Baked diffuse light, shadows included (grids/README.md, "Irradiance"); null: from the
     /// lights.
     std::shared_ptr<const BrickPyramid> irradiance{};
+    bool cached = false;  ///< its hit points are kept from frame to frame
 };
 
 struct FrameSettings {
@@ -31,13 +33,44 @@ struct FrameSettings {
     std::uint32_t seed = 0;         ///< shifts the sample pattern
     float exposure = 0.0f;          ///< EV: colours times 2^exposure
     bool shadows = true;            ///< false: nothing casts a shadow, whatever the lights say
+    int tile_step = 1;              ///< only every so-many-th tile is rendered, for measuring
     Aovs aovs;
+};
+
+/// What a frame has done with the cache. Each sample of a frame is a hit, or a ray is traced for
+/// it.
+struct ReuseCounts {
+    double seconds = 0.0;           ///< reprojection, and taking new points into the cache
+    std::uint64_t hits = 0;         ///< samples that a kept point stands in for
+    std::uint64_t misses = 0;       ///< samples without a point
+    std::uint64_t occluded = 0;     ///< with one that something hides
+    std::uint64_t turned = 0;       ///< with one that is seen from its other side
+    std::uint64_t refilled = 0;     ///< rays traced instead: misses, occluded and turned
+    std::uint64_t kept = 0;         ///< points taken into the cache
+    std::uint64_t refused = 0;      ///< points for which all of it was in use
+    std::uint64_t evicted = 0;      ///< points that made room, the least recently used
+    std::uint64_t records = 0;      ///< in the cache after the frame
+    std::uint64_t bytes = 0;        ///< of its pages in use, after the frame
+    std::uint64_t table_bytes = 0;  ///< of the table of which point is for which sample
+
+    ReuseCounts& operator+=(const ReuseCounts& other) noexcept;
+};
+
+/// What the view-independent part of one object has cost in a frame. Seconds, summed over threads.
+struct ObjectCost {
+    double evaluation = 0.0, recall = 0.0, keep = 0.0, view = 0.0;
+    std::uint64_t evaluated = 0;  ///< samples that were baked or looked up
+    std::uint64_t recalled = 0;   ///< and those from the cache
+    std::uint64_t kept = 0;
+
+    ObjectCost& operator+=(const ObjectCost& other) noexcept;
 };
 
 /// What a frame has cost. Times in seconds; those of stages are summed over threads.
 struct FrameStatistics {
     double seconds = 0.0;             ///< wall time of the whole frame
-    double evaluation_seconds = 0.0;  ///< the view-independent part: grid lookups and bake()
+    double evaluation_seconds = 0.0;  ///< the view-independent part: bake(), lookups, recalling
+    double light_seconds = 0.0;       ///< light on the samples, without its rays
     double view_seconds = 0.0;        ///< the view-dependent part: view()
     double ray_seconds = 0.0;         ///< primary and shadow rays
     std::uint64_t primary_rays = 0, shadow_rays = 0;
@@ -46,6 +79,11 @@ struct FrameStatistics {
     std::uint64_t irradiance_lookups = 0;  ///< samples whose light was looked up, or masked
     std::uint64_t misses = 0;      ///< lookups that found no brick and were evaluated directly
     std::uint64_t bad_pixels = 0;  ///< NaN or infinite, written as 0
+
+    std::uint64_t lit = 0;        ///< samples whose light was computed, shadow rays included
+    double shadow_seconds = 0.0;  ///< of ray_seconds, those of shadow rays
+    ReuseCounts reuse;
+    std::vector<ObjectCost> objects;
 
     FrameStatistics& operator+=(const FrameStatistics& other) noexcept;
 };
@@ -69,8 +107,10 @@ public:
     /// @param time       seconds
     /// @param film       of the settings' size and AOVs
     /// @param tile_done  called by any thread after each tile; may be empty
+    /// @param cache      points of cached objects are recalled from it and kept in it; null: none
     FrameStatistics render(const std::vector<ObjectShading>& shading, int camera, double time,
-                           Film& film, const std::function<void()>& tile_done);
+                           Film& film, const std::function<void()>& tile_done,
+                           ReuseCache* cache = nullptr);
 
 private:
     struct Impl;

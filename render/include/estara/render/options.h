@@ -12,15 +12,22 @@
 
 namespace estara {
 
-/// The baked values, or everything evaluated in each frame.
-enum class Strategy { grid, direct };
+/// Where the view-independent part comes from: chosen by measurement, baked grids, hit points of
+/// earlier frames, or evaluated anew in each frame.
+enum class Strategy { automatic, grid, cache, direct };
 const char* to_string(Strategy strategy) noexcept;
 
 struct Options {
     std::string scene;
     std::vector<FilePattern> outputs;
     std::vector<std::string> grids;
-    Strategy strategy = Strategy::grid;
+    Strategy strategy = Strategy::automatic;
+    std::uint64_t cache_memory = std::uint64_t{2} << 30;  ///< bytes, of the cache's pages
+    /// Frames that a hit point may serve. Windows begin at frames 1, 1 + window, 1 + 2 window, ...,
+    /// whatever --frames says: a job of whole windows gives the same pictures.
+    int window = 100;
+    /// Whether the cache keeps diffuse light and shadows; none: if only cameras move.
+    std::optional<bool> cache_light;
     std::optional<FrameRange> frames;  ///< none: the scene's animation
     double fps = 24.0;
     FrameSettings frame;

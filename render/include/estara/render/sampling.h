@@ -3,8 +3,11 @@
 
 #include <glm/glm.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "estara/shaders/kernel.h"
 
 namespace estara {
 
@@ -17,5 +20,33 @@ namespace estara {
 /// @param spp   samples a pixel, >= 1
 /// @param seed  0: not shifted; other seeds give other shifts (never of a single sample)
 std::vector<glm::vec2> sample_pattern(int spp, std::uint32_t seed);
+
+/// The pixel divided into as many rectangles of equal area as it has samples, one sample of the
+/// pattern in each: where a point that is not of the pattern stands in for one of its samples.
+///
+/// With n = m 2^j samples there are m columns and 2^j rows: of n consecutive points of the pattern
+/// each such rectangle holds one. j is chosen so that they are as square as can be. They are
+/// shifted with the pattern, around the pixel's edges.
+class SampleStrata {
+public:
+    SampleStrata(int spp, std::uint32_t seed);
+
+    int columns() const noexcept { return m_columns; }
+    int rows() const noexcept { return m_rows; }
+    glm::vec2 shift() const noexcept { return m_shift; }
+    /// The column (or row) of a place in the pixel, one of its coordinates, [0, 1).
+    ESTARA_KERNEL static int cell(float place, float shift, int cells) noexcept {
+        const float moved = place - shift;
+        const int c = int((moved - std::floor(moved)) * float(cells));
+        return c < cells ? c : cells - 1;  // rounding
+    }
+    /// The sample of the pattern in a rectangle, given as column + columns * row.
+    int sample(int rectangle) const noexcept { return m_sample[std::size_t(rectangle)]; }
+
+private:
+    int m_columns, m_rows;
+    glm::vec2 m_shift;
+    std::vector<int> m_sample;  ///< by rectangle, row by row
+};
 
 }  // namespace estara

@@ -65,6 +65,10 @@ struct alignas(64) HitBatch {
     float b1[batch_capacity], b2[batch_capacity], t[batch_capacity];
 };
 
+/// Whether rays can be taken to an instance's object space and back: no axis has collapsed, nothing
+/// overflows. Others cannot be hit.
+bool can_be_hit(const glm::mat4& world_from_object) noexcept;
+
 /// The scene's geometry in a two-level acceleration structure: one per mesh in object space, one
 /// over the instances, rebuilt for each frame.
 class RayScene {
@@ -77,8 +81,8 @@ public:
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
-    /// Moves the instances. Not while other threads trace. One whose matrix is singular (scaled to
-    /// nothing) or not finite cannot be hit.
+    /// Moves the instances. Not while other threads trace. See
+    /// can_be_hit().
     void set_pose(const Pose& pose);
 
     /// Nearest hits; rays that start near each other and go the same way are fastest (packets of

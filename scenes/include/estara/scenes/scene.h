@@ -128,6 +128,16 @@ struct PinholePose {
                up * ((0.5f * float(height) - y) * pixel);
     }
 
+    /// Where direction() goes through the image on its way to P, world: x and y in pixels, z the
+    /// distance along forward, > 0 in front of the eye.
+    ESTARA_KERNEL glm::vec3 project(const glm::vec3& P, int width, int height) const noexcept {
+        const glm::vec3 d = P - eye;
+        const float z = glm::dot(d, forward);
+        const float scale = 0.5f * float(height) / (tan_half_yfov * z);
+        return {0.5f * float(width) + glm::dot(d, right) * scale,
+                0.5f * float(height) - glm::dot(d, up) * scale, z};
+    }
+
     /// Angle between neighbouring pixels at the image centre, radians (the largest in the image).
     float pixel_angle(int height) const noexcept;
 };

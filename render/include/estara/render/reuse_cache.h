@@ -1,0 +1,133 @@
+// View-independent data of hit points, kept from frame to frame.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+namespace estara {
+
+/// What is kept of a hit point of one object: floats, in this order.
+///
+///     P (3)  N (3)  Ng (3)  baked...  [E (3)  sides...]
+///
+/// All in object space, so that the point stays on an object that moves. N is the shading normal,
+/// or the normal that the shader has perturbed it to; Ng the geometric one. `baked` are the floats
+/// of the shader's Baked without its normal. E and sides are there where neither lights nor objects
+/// move: diffuse irradiance / pi, and as bits of words, first whether the point was seen from the
+/// side that Ng points to (E is that of this side), then for each light whether it is visible.
+/// (With one colour and up to 31 lights a record is 64 bytes, a line of the processor's cache.)
+struct RecordLayout {
+    int baked = 0;
+    int lights = -1;  ///< of the scene; -1: E and sides are not kept
+
+    static constexpr int P = 0, N = 3, Ng = 6, first_baked = 9;
+    bool is_lit() const noexcept { return lights >= 0; }
+    int words() const noexcept { return is_lit() ? lights / 32 + 1 : 0; }
+    int E() const noexcept { return first_baked + baked; }
+    int sides() const noexcept { return E() + 3; }
+    int floats() const noexcept { return is_lit() ? sides() + words() : E(); }
+};
+
+/// What a ray's hit point is known by: unique as long as the cache lives. Smaller is older.
+struct RayId {
+    std::uint64_t bits = ~std::uint64_t{0};
+
+    static constexpr int index_bits = 11, page_bits = 32, born_bits = 20;
+    RayId() = default;
+    RayId(int born, std::uint32_t page, int index) noexcept
+        : bits((std::uint64_t(born) << (index_bits + page_bits)) |
+               (std::uint64_t(page) << index_bits) | std::uint64_t(index)) {}
+    std::uint32_t page() const noexcept { return std::uint32_t(bits >> index_bits); }
+    int index() const noexcept { return int(bits & ((1u << index_bits) - 1)); }
+    int born() const noexcept {
+        return int(bits >> (index_bits + page_bits) & ((1u << born_bits) - 1));
+    }
+};
+
+/// A cache of fixed size with least-recently-used replacement (Knuth, "Sorting and Searching"; the
+/// paper's section 3.3 asks for one).
+///
+/// Records live in pages of equal size; a page holds records of one instance, born in one frame. A
+/// page is used in a frame in which any of its records serves the picture, and the page that has
+/// not been used for longest is the next to be given away; one that is used in this frame never is.
+/// Not thread-safe, but for reading, and for set_hidden() of different records.
+class ReuseCache {
+public:
+    static constexpr std::size_t page_bytes = 16384;
+    /// Frames that a window can have, at most: what a RayId can tell apart.
+    static constexpr int longest_window = (1 << RayId::born_bits) - 1;
+
+    /// @param bytes    of memory for pages. Error (bad input) if not one fits
+    /// @param layouts  by object; records of objects that are not cached are not added
+    /// @param objects  by instance
+    ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts, std::vector<int> objects);
+
+    /// Forgets everything: a new window.
+    void clear();
+
+    /// The next frame begins: frames are counted from 0 since clear(). Pages that mark_used() names
+    /// from now on stay until the next one.
+    void start_frame();
+    int frame() const noexcept { return m_frame; }
+
+    const RecordLayout& layout(int instance) const noexcept {
+        return m_layouts[std::size_t(m_objects[std::size_t(instance)])];
+    }
+
+    /// A page of records, one after the other, and beside them as structure of arrays what every
+    /// frame reads of every record.
+    struct Page {
+        int instance = -1;  ///< -1: free
+        int size = 0;       ///< records in it
+        int born = 0, used = 0;
+        int capacity = 0, floats = 0;  ///< records that fit, and floats of each
+        float* memory = nullptr;
+
+        float* record(int index) const noexcept { return memory + index * floats; }
+        float* P(int c) const noexcept { return record(capacity) + c * capacity; }
+        std::uint8_t* hidden() const noexcept { return reinterpret_cast<std::uint8_t*>(P(3)); }
+    };
+    int page_count() const noexcept { return int(m_pages.size()); }
+    const Page& page(std::uint32_t p) const noexcept { return m_pages[p]; }
+
+    /// Notes whether something is in front of the point.
+    void set_hidden(RayId id, bool hidden) noexcept {
+        m_pages[id.page()].hidden()[id.index()] = hidden ? 1 : 0;
+    }
+
+    void mark_used(std::uint32_t page) noexcept { m_pages[page].used = m_frame; }
+    /// After mark_used() of every page that this frame needs: the others are queued to be given
+    /// away.
+    void queue_unused();
+
+    /// Adds a record of this frame. False if there is no page for it.
+    /// @param floats  layout(instance).floats() of them
+    bool add(int instance, const float* floats);
+
+    std::uint64_t records() const noexcept { return m_records; }
+    std::uint64_t evicted() const noexcept { return m_evicted; }            ///< in this frame
+    std::uint64_t bytes() const noexcept { return m_in_use * page_bytes; }  ///< of pages in use
+
+private:
+    int take_page();
+
+    struct Free {
+        void operator()(float* memory) const noexcept;
+    };
+    std::vector<RecordLayout> m_layouts;
+    std::vector<int> m_objects;
+    std::unique_ptr<float, Free> m_memory;
+    std::vector<Page> m_pages;
+    std::vector<int> m_free;   ///< pages, the next one last
+    std::deque<int> m_unused;  ///< pages that may be given away, the oldest first
+    std::vector<int> m_open;   ///< by instance: page of this frame with room, or -1
+    int m_frame = -1;
+    std::uint64_t m_records = 0, m_evicted = 0, m_in_use = 0;
+};
+
+}  // namespace estara

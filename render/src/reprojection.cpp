@@ -1,0 +1,101 @@
+#include "reprojection.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "estara/shaders/wide.h"
+
+namespace estara {
+namespace {
+
+void keep_smallest(std::uint64_t& at, std::uint64_t value) noexcept {
+    const std::atomic_ref<std::uint64_t> kept(at);
+    std::uint64_t old = kept.load(std::memory_order_relaxed);
+    while (value < old && !kept.compare_exchange_weak(old, value, std::memory_order_relaxed)) {
+    }
+}
+
+template <class F>
+void in_parallel(std::size_t count, std::size_t grain, const F& f) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const auto& range) { f(range.begin(), range.end()); });
+}
+
+}  // namespace
+
+Reprojection::Reprojection(const FrameSettings& settings)
+    : m_width(settings.width),
+      m_height(settings.height),
+      m_strata(settings.spp, settings.seed),
+      m_slots(std::size_t(settings.width) * std::size_t(settings.height) *
+              std::size_t(settings.spp)),
+      m_claims(new std::uint64_t[m_slots]) {}
+
+void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
+                         std::span<const PosedInstance> instances) {
+    m_cache = &cache;
+    cache.start_frame();
+    in_parallel(m_slots, 1u << 16, [&](std::size_t first, std::size_t last) {
+        std::fill(m_claims.get() + first, m_claims.get() + last, ~std::uint64_t{0});
+    });
+    in_parallel(std::size_t(cache.page_count()), 8, [&](std::size_t first, std::size_t last) {
+        for (std::size_t p = first; p < last; ++p) {
+            const int instance = cache.page(std::uint32_t(p)).instance;
+            if (instance < 0 || !instances[std::size_t(instance)].is_there) continue;
+            claim(pose, instances[std::size_t(instance)], int(p));
+        }
+    });
+    in_parallel(m_slots, 1u << 14, [&](std::size_t first, std::size_t last) {
+        std::uint32_t previous = ~0u;
+        for (std::size_t s = first; s < last; ++s) {
+            RayId id;
+            id.bits = m_claims[s] & ~hidden;
+            if (id.bits == none || id.page() == previous) continue;
+            previous = id.page();
+            cache.mark_used(previous);
+        }
+    });
+    cache.queue_unused();
+}
+
+void Reprojection::claim(const PinholePose& pose, const PosedInstance& instance, int p) noexcept {
+    constexpr int most = 1 << RayId::index_bits;
+    struct Places {
+        std::uint32_t pixel[most];
+        int stratum[most];  ///< -1: outside the image
+    };
+    thread_local Places places;
+    const ReuseCache::Page& page = m_cache->page(std::uint32_t(p));
+    wide([=, to = &places, m = instance.world_from_object, size = page.size, Px = page.P(0),
+          Py = page.P(1), Pz = page.P(2), width = m_width, height = m_height,
+          columns = m_strata.columns(), rows = m_strata.rows(),
+          shift = m_strata.shift()]() ESTARA_LOOP {
+        const glm::vec3 mx(m[0]), my(m[1]), mz(m[2]), mt(m[3]);
+#pragma GCC ivdep
+        for (int i = 0; i < size; ++i) {
+            const glm::vec3 P = mx * Px[i] + my * Py[i] + mz * Pz[i] + mt;
+            const glm::vec3 at = pose.project(P, width, height);
+            const bool seen = (at.z > 0.0f) & (at.x >= 0.0f) & (at.x < float(width)) &
+                              (at.y >= 0.0f) & (at.y < float(height));
+            const float x = seen ? at.x : 0.0f, y = seen ? at.y : 0.0f;
+            const int column = int(x), row = int(y);
+            const int stratum = SampleStrata::cell(x - float(column), shift.x, columns) +
+                                columns * SampleStrata::cell(y - float(row), shift.y, rows);
+            to->stratum[i] = seen ? stratum : -1;
+            to->pixel[i] = std::uint32_t(row) * std::uint32_t(width) + std::uint32_t(column);
+        }
+    });
+    const std::size_t pixels = std::size_t(m_width) * std::size_t(m_height);
+    for (int i = 0; i < page.size; ++i) {
+        if (places.stratum[i] < 0) continue;
+        const std::size_t slot =
+            std::size_t(m_strata.sample(places.stratum[i])) * pixels + std::size_t(places.pixel[i]);
+        const RayId id(page.born, std::uint32_t(p), i);
+        keep_smallest(m_claims[slot], id.bits | (page.hidden()[i] != 0 ? hidden : 0));
+    }
+}
+
+}  // namespace estara

@@ -1,0 +1,112 @@
+#include "estara/render/reuse_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <tuple>
+
+#include "estara/scenes/error.h"
+#include "estara/scenes/program.h"
+
+namespace estara {
+
+void ReuseCache::Free::operator()(float* memory) const noexcept { std::free(memory); }
+
+ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
+                       std::vector<int> objects)
+    : m_layouts(std::move(layouts)), m_objects(std::move(objects)) {
+    const std::uint64_t pages =
+        std::min<std::uint64_t>(bytes / page_bytes, (std::uint64_t{1} << 31) - 1);
+    if (pages == 0) {
+        throw Error(fmt::format("--cache-memory {}: a page of the cache alone takes {}",
+                                format_bytes(bytes), format_bytes(page_bytes)));
+    }
+    // The system gives memory of this size when it is first touched.
+    m_memory.reset(static_cast<float*>(std::aligned_alloc(4096, pages * page_bytes)));
+    if (!m_memory) {
+        throw Error(fmt::format("--cache-memory: {} cannot be had", format_bytes(bytes)),
+                    ExitStatus::failed);
+    }
+    m_pages.resize(pages);
+    for (std::size_t p = 0; p < pages; ++p) {
+        m_pages[p].memory = m_memory.get() + p * (page_bytes / sizeof(float));
+    }
+    clear();
+}
+
+void ReuseCache::clear() {
+    m_free.resize(m_pages.size());
+    for (std::size_t p = 0; p < m_pages.size(); ++p) {
+        m_pages[p].instance = -1;
+        m_pages[p].size = 0;
+        m_free[p] = int(m_pages.size() - 1 - p);
+    }
+    m_unused.clear();
+    m_open.assign(m_objects.size(), -1);
+    m_frame = -1;
+    m_records = m_evicted = m_in_use = 0;
+}
+
+void ReuseCache::start_frame() {
+    ++m_frame;
+    m_evicted = 0;
+    m_open.assign(m_objects.size(), -1);
+    m_unused.clear();
+}
+
+void ReuseCache::queue_unused() {
+    std::vector<int> unused;
+    for (int p = 0; p < page_count(); ++p) {
+        const Page& one = m_pages[std::size_t(p)];
+        if (one.instance >= 0 && one.used < m_frame) unused.push_back(p);
+    }
+    std::sort(unused.begin(), unused.end(), [&](int a, int b) {
+        const Page &x = m_pages[std::size_t(a)], &y = m_pages[std::size_t(b)];
+        return std::tie(x.used, x.born, a) < std::tie(y.used, y.born, b);
+    });
+    m_unused.assign(unused.begin(), unused.end());
+}
+
+int ReuseCache::take_page() {
+    if (!m_free.empty()) {
+        const int p = m_free.back();
+        m_free.pop_back();
+        ++m_in_use;
+        return p;
+    }
+    if (m_unused.empty()) return -1;
+    const int p = m_unused.front();
+    m_unused.pop_front();
+    m_records -= std::uint64_t(m_pages[std::size_t(p)].size);
+    m_evicted += std::uint64_t(m_pages[std::size_t(p)].size);
+    return p;
+}
+
+bool ReuseCache::add(int instance, const float* floats) {
+    int& open = m_open[std::size_t(instance)];
+    if (open < 0 || m_pages[std::size_t(open)].size == m_pages[std::size_t(open)].capacity) {
+        open = take_page();
+        if (open < 0) return false;
+        Page& fresh = m_pages[std::size_t(open)];
+        fresh.instance = instance;
+        fresh.size = 0;
+        fresh.born = fresh.used = m_frame;
+        fresh.floats = layout(instance).floats();
+        constexpr std::size_t beside = 3 * sizeof(float) + 1;  // P once more, hidden
+        fresh.capacity =
+            int(std::min(page_bytes / (std::size_t(fresh.floats) * sizeof(float) + beside),
+                         std::size_t{1} << RayId::index_bits));
+    }
+    Page& p = m_pages[std::size_t(open)];
+    const int i = p.size++;
+    std::memcpy(p.record(i), floats, std::size_t(p.floats) * sizeof(float));
+    for (int c = 0; c < 3; ++c) p.P(c)[i] = floats[RecordLayout::P + c];
+    p.hidden()[i] = 0;
+    ++m_records;
+    return true;
+}
+
+}  // namespace estara

@@ -1,0 +1,299 @@
+// Frames whose samples are recalled from the frames before them.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstring>
+
+#include "estara/render/compare.h"
+#include "estara/render/dress.h"
+#include "estara/render/frame.h"
+#include "small_scene.h"
+
+namespace estara {
+namespace {
+
+using test::add_sun;
+using test::object;
+using test::scene_of;
+using test::sphere;
+
+constexpr int width = 70, height = 50;  // no multiple of a tile
+
+/// An animation of a scene that is changed by hand between its frames.
+class Reused {
+public:
+    explicit Reused(Scene& scene, std::uint64_t cache_bytes = 1u << 26, bool keeps_light = true,
+                    int spp = 4)
+        : m_rays(scene) {
+        m_settings.width = width;
+        m_settings.height = height;
+        m_settings.spp = spp;
+        m_settings.aovs.hit = m_settings.aovs.age = m_settings.aovs.occluded = true;
+        m_renderer = std::make_unique<FrameRenderer>(scene, m_rays, m_settings);
+        Options options;
+        options.cache_memory = cache_bytes;
+        options.cache_light = keeps_light;
+        for (const Object& o : scene.objects) m_direct.push_back({o.shader, nullptr, 0.01f});
+        m_cached = m_direct;
+        for (ObjectShading& shading : m_cached) shading.cached = true;
+        m_cache = make_cache(scene, options, m_cached);
+    }
+
+    Film render() {
+        Film film(width, height, m_settings.aovs);
+        cost = m_renderer->render(m_cached, 0, 0.0, film, {}, m_cache.get());
+        return film;
+    }
+    Film direct() {
+        Film film(width, height, m_settings.aovs);
+        m_renderer->render(m_direct, 0, 0.0, film, {});
+        return film;
+    }
+    ReuseCache& cache() { return *m_cache; }
+    int spp() const { return m_settings.spp; }
+
+    FrameStatistics cost;  ///< of the last render()
+
+private:
+    RayScene m_rays;
+    FrameSettings m_settings;
+    std::unique_ptr<FrameRenderer> m_renderer;
+    std::vector<ObjectShading> m_direct, m_cached;
+    std::unique_ptr<ReuseCache> m_cache;
+};
+
+bool same_colours(const Film& a, const Film& b) {
+    return std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(glm::vec4)) == 0;
+}
+
+/// Every sample is there, from wherever.
+void expect_all_samples(const Reused& reused) {
+    const ReuseCounts& r = reused.cost.reuse;
+    const auto all = std::uint64_t(width * height * reused.spp());
+    EXPECT_EQ(r.hits + r.refilled, all);
+    EXPECT_EQ(r.refilled, r.misses + r.occluded + r.turned);
+    EXPECT_EQ(reused.cost.primary_rays, r.refilled);
+}
+
+/// A wooden ball and a marble one in front of a stone wall, under a sun; all of it static.
+Scene room() {
+    Mesh wall;
+    wall.P = {{-8, -8, -2}, {8, -8, -2}, {8, 8, -2}, {-8, 8, -2}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    Scene scene = scene_of({object("ball", sphere(1.0f, 48), "wood", {{"ringscale", {3.0f}}}),
+                            object("wall", wall, "stone", {{"scale", {0.8f}}}),
+                            object("little", sphere(0.4f, 32), "greenmarble", {})});
+    Node aside;
+    aside.translation = {0.9f, 0.6f, 0.9f};
+    scene.nodes.push_back(aside);
+    scene.instances[2].node = int(scene.nodes.size()) - 1;
+    scene.ambient = glm::vec3(0.2f);
+    add_sun(scene, glm::quat(glm::vec3(-0.6f, 0.4f, 0.0f)));
+    return scene;
+}
+
+TEST(Reuse, OfTheFirstFrameIsDirectBitByBit) {
+    Scene scene = room();
+    Reused reused(scene);
+    EXPECT_TRUE(same_colours(reused.render(), reused.direct()));
+    EXPECT_EQ(reused.cost.reuse.hits, 0u);
+    EXPECT_EQ(reused.cost.reuse.kept, reused.cost.samples);
+    expect_all_samples(reused);
+}
+
+TEST(Reuse, WhereNothingMovesRecallsEverythingAndChangesNothing) {
+    Scene scene = room();
+    Reused reused(scene);
+    const Film first = reused.render();
+    for (int frame = 1; frame < 4; ++frame) {
+        const Film again = reused.render();
+        EXPECT_TRUE(same_colours(again, first));
+        EXPECT_EQ(reused.cost.reuse.hits, reused.cost.samples);
+        EXPECT_EQ(reused.cost.reuse.occluded, 0u);
+        EXPECT_EQ(reused.cost.shadow_rays, 0u);
+        EXPECT_EQ(reused.cost.reuse.kept, 0u);
+        const std::size_t middle = first.index(35, 25);
+        EXPECT_EQ(again.hit[middle], 1.0f);
+        EXPECT_EQ(again.age[middle], float(frame));
+        EXPECT_EQ(again.occluded[middle], 0.0f);
+    }
+}
+
+TEST(Reuse, FollowsAMovingCameraCloseToDirect) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, true, 16);
+    for (int frame = 0; frame < 8; ++frame) {
+        scene.nodes[1].translation = {0.02f * float(frame), 0.01f * float(frame), 4.0f};
+        const Film film = reused.render();
+        expect_all_samples(reused);
+        // Other points of the same pixels: as far apart as two sample patterns are.
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.012) << frame;
+        if (frame > 0) {
+            EXPECT_GT(reused.cost.reuse.hits, reused.cost.samples / 2);
+        }
+    }
+}
+
+TEST(Reuse, KeepsAlphaWhereTheBackgroundIsSeen) {
+    Scene scene = scene_of({object("ball", sphere(1.0f, 48))});
+    Reused reused(scene, 1u << 26, true, 16);
+    reused.render();
+    scene.nodes[1].translation.x = 0.05f;
+    const Film film = reused.render(), direct = reused.direct();
+    double covered = 0.0, expected = 0.0;
+    for (std::size_t i = 0; i < film.color.size(); ++i) {
+        covered += double(film.color[i].a);
+        expected += double(direct.color[i].a);
+    }
+    // Rectangles on the silhouette may take either side: half of one along all of it, at most.
+    EXPECT_NEAR(covered, expected, 0.01 * expected);
+}
+
+TEST(Reuse, IsTheSameWithOneThreadAndFour) {
+    std::vector<Film> last;
+    std::vector<ReuseCounts> counts;
+    for (const std::size_t threads : {1u, 4u}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        Scene scene = room();
+        Reused reused(scene, 1u << 19);  // so small that points are evicted
+        for (int frame = 0; frame < 6; ++frame) {
+            scene.nodes[1].translation.x = 1.5f * float(frame);
+            Film film = reused.render();
+            if (frame == 5) last.push_back(std::move(film));
+        }
+        counts.push_back(reused.cost.reuse);
+    }
+    EXPECT_TRUE(same_colours(last[0], last[1]));
+    EXPECT_EQ(counts[0].hits, counts[1].hits);
+    EXPECT_EQ(counts[0].evicted, counts[1].evicted);
+    EXPECT_EQ(counts[0].records, counts[1].records);
+    EXPECT_GT(counts[0].evicted, 0u);
+}
+
+TEST(Reuse, WithAPageOrTwoIsNoWorseThanDirect) {
+    for (const std::uint64_t pages : {1u, 2u, 5u}) {
+        Scene scene = room();
+        Reused reused(scene, pages * ReuseCache::page_bytes, true, 16);
+        for (int frame = 0; frame < 4; ++frame) {
+            scene.nodes[1].translation.x = 0.05f * float(frame);
+            const Film film = reused.render();
+            expect_all_samples(reused);
+            EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.012);
+            EXPECT_GT(reused.cost.reuse.refused, 0u);
+            EXPECT_LE(reused.cost.reuse.bytes, pages * ReuseCache::page_bytes);
+        }
+    }
+}
+
+TEST(Reuse, AfterATurnOfTheCameraIsDirectBitByBit) {
+    Scene scene = room();
+    Reused reused(scene);
+    reused.render();
+    scene.nodes[1].rotation = glm::quat(glm::vec3(0.0f, 3.14159265f, 0.0f));
+    const Film behind = reused.render();  // nothing is there, and all points are behind the eye
+    EXPECT_EQ(reused.cost.reuse.hits, 0u);
+    EXPECT_TRUE(same_colours(behind, reused.direct()));
+    scene.nodes[1].rotation = glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+    reused.render();
+    EXPECT_EQ(reused.cost.reuse.hits, reused.cost.samples);  // they have not been forgotten
+}
+
+TEST(Reuse, StandsACameraCutIntoTheSceneItself) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, true, 16);
+    reused.render();
+    // On the surface of the ball, in the wall, within the ball, and far away.
+    for (const glm::vec3 eye : {glm::vec3(0.0f, 0.0f, 1.0f), glm::vec3(0.5f, 0.5f, -2.0f),
+                                glm::vec3(0.0f), glm::vec3(0.0f, 0.0f, 1e5f)}) {
+        scene.nodes[1].translation = eye;
+        const Film film = reused.render();
+        expect_all_samples(reused);
+        EXPECT_EQ(reused.cost.bad_pixels, 0u);
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.02);
+    }
+}
+
+TEST(Reuse, TakesASheetFromItsOtherSideForWhatItIs) {
+    Mesh sheet;
+    sheet.P = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    Scene scene = scene_of({object("sheet", sheet)});
+    scene.ambient = glm::vec3(0.0f);
+    add_sun(scene, glm::quat(1.0f, 0.0f, 0.0f, 0.0f));  // on the front alone
+    Reused reused(scene);
+    const Film front = reused.render();
+    EXPECT_GT(front.color[front.index(35, 25)].r, 0.2f);
+    scene.nodes[1].translation = {0.0f, 0.0f, -4.0f};
+    scene.nodes[1].rotation = glm::quat(glm::vec3(0.0f, 3.14159265f, 0.0f));
+    const Film back = reused.render();
+    EXPECT_GT(reused.cost.reuse.turned, 0u);
+    EXPECT_EQ(back.color[back.index(35, 25)].r, 0.0f);
+    EXPECT_LT(compare_films(back, reused.direct()).max, 1e-6);
+}
+
+TEST(Reuse, FollowsMovingObjectsAndWhatTheyHide) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, false, 16);  // light changes: shadows move
+    for (int frame = 0; frame < 8; ++frame) {
+        scene.nodes[2].translation.x = 0.9f - 0.15f * float(frame);
+        scene.nodes[0].rotation = glm::quat(glm::vec3(0.0f, 0.02f * float(frame), 0.0f));
+        const Film film = reused.render();
+        expect_all_samples(reused);
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.015) << frame;
+        if (frame > 0) {
+            EXPECT_GT(reused.cost.reuse.occluded, 0u);
+            EXPECT_GT(reused.cost.shadow_rays, 0u);
+        }
+    }
+}
+
+TEST(Reuse, ForgetsAnObjectThatIsScaledToNothing) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, false);
+    reused.render();
+    scene.nodes[2].scale = glm::vec3(0.0f);
+    EXPECT_LT(compare_films(reused.render(), reused.direct()).max, 1e-6);
+    scene.nodes[2].scale = glm::vec3(1.0f);
+    EXPECT_LT(compare_films(reused.render(), reused.direct()).rmse, 0.012);
+}
+
+TEST(Reuse, KeepsShadowsWhereTheyAre) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, true, 16);
+    reused.render();
+    for (int frame = 1; frame < 5; ++frame) {
+        scene.nodes[1].translation = {0.0f, 0.0f, 4.0f - 0.05f * float(frame)};
+        const Film film = reused.render();
+        EXPECT_LT(reused.cost.shadow_rays, reused.cost.reuse.refilled + 1);
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.012);
+    }
+}
+
+/// A point of a convex body that faces the eye is hidden by nothing: what is called hidden is
+/// where the surface turns away, or an error of the self-intersection bound.
+TEST(Reuse, CallsNothingHiddenOnAConvexBodyOfAnySizeAnywhere) {
+    struct Place {
+        float radius;
+        glm::vec3 centre;
+    };
+    for (const Place& place : {Place{1.0f, {0, 0, 0}}, Place{1e-4f, {0, 0, 0}},
+                               Place{1e4f, {0, 0, 0}}, Place{1.0f, {3e3f, -2e3f, 1e3f}}}) {
+        Scene scene = scene_of({object("ball", sphere(1.0f, 64))});
+        scene.nodes[0].scale = glm::vec3(place.radius);
+        scene.nodes[0].translation = place.centre;
+        const auto look_from = [&](float x) {
+            scene.nodes[1].translation = place.centre + place.radius * glm::vec3(x, 0.0f, 4.0f);
+        };
+        look_from(0.0f);
+        Reused reused(scene, 1u << 26, true, 16);
+        reused.render();
+        look_from(0.02f);
+        reused.render();
+        EXPECT_LT(double(reused.cost.reuse.occluded), 0.003 * double(reused.cost.samples))
+            << place.radius;
+        EXPECT_GT(double(reused.cost.reuse.hits), 0.8 * double(reused.cost.samples));
+    }
+}
+
+}  // namespace
+}  // namespace estara
