@@ -28,7 +28,7 @@ TEST(Bumped, LeavesTheNormalWhereTheHeightIsFlat) {
     test::Random random(2);
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 N = random.direction();
-        expect_near(bumped(N, glm::vec3(0.0f)), N, 1e-7f);
+        expect_near(bumped(N, glm::vec3(0.0f)), N, 3e-7f);
         expect_near(bumped(N, N * 5.0f), N, 2e-6f);  // the height changes off the surface alone
     }
 }

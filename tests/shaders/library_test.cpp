@@ -347,8 +347,7 @@ TEST(RCSkin, HasAsManyOctavesAsLieBelowMaxfreq) {
     const std::vector<float> none = planes(1);  // tau is 0: no pores, and the spline's start
     for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(none[std::size_t((9 + c) * capacity)], batch.N[c][0], 1e-6f);
-        EXPECT_NEAR(none[std::size_t(c * capacity)], std::array{.7f, .56f, .52f}[std::size_t(c)],
-                    1e-6f);
+        EXPECT_NEAR(none[std::size_t(c * capacity)], (c == 0 ? .7f : c == 1 ? .56f : .52f), 1e-6f);
     }
 }
 

@@ -306,7 +306,7 @@ Record blocks(const Values& v, const SurfacePoint& x) {
         const Wall w = wall(v, p, flat);
         return v["bump"] * v["blockheight"] / 30 * smoothstep(0, 1, w.inside) * (1 - w.pit);
     };
-    dvec3 slope = gradient(relief, q, 1e-7);
+    dvec3 slope = change(relief, q, 1e-7);
     if (flat) {
         const dvec3 u = tangent(x, x.N);
         slope = slope.x * u + slope.y * glm::cross(dvec3(x.N), u);
@@ -323,7 +323,7 @@ Record skin(const Values& v, const SurfacePoint& x) {
         return v["poresdepth"] *
                std::pow(skin_turbulence(p * v["poresfreq"], v["maxfreq"]), v["poresthresh"]);
     };
-    const dvec3 N = bumped(x.N, gradient(pores, dvec3(x.P), 1e-9));
+    const dvec3 N = bumped(x.N, change(pores, dvec3(x.P), 1e-9));
     const double place =
         std::pow(skin_turbulence(dvec3(x.P) * v["blemishfreq"], v["maxfreq"]), v["blemishthresh"]);
     dvec3 color(0.0);

@@ -48,7 +48,7 @@ double skin_turbulence(const glm::dvec3& q, double maxfreq);
 
 /// Change of a number with the point, by central differences over 2h.
 template <class F>
-glm::dvec3 gradient(F f, const glm::dvec3& p, double h) {
+glm::dvec3 change(F f, const glm::dvec3& p, double h) {
     glm::dvec3 slope(0.0);
     for (int c = 0; c < 3; ++c) {
         glm::dvec3 step(0.0);
