@@ -255,18 +255,18 @@ TEST(SincosDegrees, IsExactAtQuartersOfACircle) {
     }
 }
 
-TEST(UnitOr, IsOfUnitLengthOrTheOther) {
+TEST(UnitVectorOr, IsOfUnitLengthOrTheOther) {
     const glm::vec3 other(0.0f, 0.6f, 0.8f);
     test::Random random(10);
     for (int i = 0; i < 10000; ++i) {
         const glm::vec3 d = random.direction() * std::exp2(random.within(-49.0f, 49.0f));
-        const glm::vec3 unit = unit_or(d, other);
+        const glm::vec3 unit = unit_vector_or(d, other);
         ASSERT_NEAR(glm::length(unit), 1.0f, 1e-6f);
         ASSERT_GT(glm::dot(unit, d) / glm::length(d), 0.999999f);
     }
-    EXPECT_EQ(unit_or(glm::vec3(0.0f), other), other);
-    EXPECT_EQ(unit_or(glm::vec3(1e30f), other), other);
-    EXPECT_EQ(unit_or(glm::vec3(std::nanf("")), other), other);
+    EXPECT_EQ(unit_vector_or(glm::vec3(0.0f), other), other);
+    EXPECT_EQ(unit_vector_or(glm::vec3(1e30f), other), other);
+    EXPECT_EQ(unit_vector_or(glm::vec3(std::nanf("")), other), other);
 }
 
 }  // namespace

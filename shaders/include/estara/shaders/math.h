@@ -140,7 +140,7 @@ ESTARA_KERNEL SinCos sincos_degrees(float degrees) noexcept {
 }
 
 /// v at unit length, or `otherwise` where v is too short or too long to tell its direction.
-ESTARA_KERNEL glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
+ESTARA_KERNEL glm::vec3 unit_vector_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
     const float length2 = glm::dot(v, v);
     const bool usable = length2 > 1e-30f && length2 < 1e30f;
     const float scale = 1.0f / std::sqrt(usable ? length2 : 1.0f);
