@@ -32,13 +32,25 @@ ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i,
 }
 
 ESTARA_KERNEL SurfacePoint point_of(const SurfaceBatch& in, int i, float filter_width,
-                                    float octave_sum) noexcept {
+                                    float octave_sum,
+                                    const glm::vec4& octave_more = glm::vec4(0.0f)) noexcept {
     return {{in.P[0][i], in.P[1][i], in.P[2][i]},
             {in.N[0][i], in.N[1][i], in.N[2][i]},
             {in.uv[0][i], in.uv[1][i]},
             {in.dPdu[0][i], in.dPdu[1][i], in.dPdu[2][i]},
             filter_width,
-            octave_sum};
+            octave_sum,
+            octave_more};
+}
+
+/// How many terms the shader's sums have.
+template <class S>
+int octaves_of(const S& shader, float filter_width) noexcept {
+    if constexpr (requires { shader.octaves(); }) {
+        return shader.octaves();
+    } else {
+        return octaves_for(filter_width * octave_frequency_of(shader));
+    }
 }
 
 /// The scalar loops that the compiler makes wide. The shader and what is uniform over the batch are
@@ -48,9 +60,27 @@ ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, 
                              float* __restrict planes) noexcept {
     const float filter_width = in.filter_width;
     const bool normal = perturbs_normal(shader);
-    if constexpr (HasOctaves<S>) {
+    if constexpr (HasFiveSums<S>) {
+        float sums[5][SurfaceBatch::capacity] = {};
+        const int octaves = octaves_of(shader, filter_width);
+        for (int k = 0; k < octaves; ++k) {
+            for (int i = first; i < last; ++i) {
+                const OctaveTerm term = shader.octave(point_of(in, i, filter_width, 0.0f), k);
+                sums[0][i] += term.value;
+                sums[1][i] += term.more.x;
+                sums[2][i] += term.more.y;
+                sums[3][i] += term.more.z;
+                sums[4][i] += term.more.w;
+            }
+        }
+        for (int i = first; i < last; ++i) {
+            const glm::vec4 more(sums[1][i], sums[2][i], sums[3][i], sums[4][i]);
+            store<S>(shader.bake(point_of(in, i, filter_width, sums[0][i], more)), planes, i,
+                     normal);
+        }
+    } else if constexpr (HasOctaves<S>) {
         float sums[SurfaceBatch::capacity] = {};
-        const int octaves = octaves_for(filter_width * octave_frequency_of(shader));
+        const int octaves = octaves_of(shader, filter_width);
         for (int k = 0; k < octaves; ++k) {
             for (int i = first; i < last; ++i) {
                 sums[i] += shader.octave(point_of(in, i, filter_width, 0.0f), k);

@@ -1,4 +1,4 @@
-// EXPECT: octave() takes a SurfacePoint and an int and returns a float; it is const and noexcept
+// EXPECT: octave() takes a SurfacePoint and an int and returns a float or an OctaveTerm; it is const and noexcept
 #include "estara/shaders/shader.h"
 
 using namespace estara;

@@ -44,6 +44,13 @@ ESTARA_KERNEL float smoothstep(float a, float b, float x) noexcept {
     return width > 0.0f ? t * t * (3.0f - 2.0f * t) : step(a, x);
 }
 
+/// The derivative of smoothstep(a, b, x) with x; 0 for a == b.
+ESTARA_KERNEL float smoothstep_slope(float a, float b, float x) noexcept {
+    const float width = b - a, positive = width > 0.0f ? width : 1.0f;
+    const float t = clamp((x - a) / positive, 0.0f, 1.0f);
+    return width > 0.0f ? 6.0f * t * (1.0f - t) / positive : 0.0f;
+}
+
 /// step(edge, x) averaged over a box of width w > 0 around x.
 ESTARA_KERNEL float filterstep(float edge, float x, float w) noexcept {
     return clamp((x + 0.5f * w - edge) / w, 0.0f, 1.0f);
@@ -106,6 +113,35 @@ ESTARA_KERNEL float power(float x, float y) noexcept {
     const float smallest = 1.17549435e-38f;
     const float r = exp2_kernel(y * log2_kernel(x < smallest ? smallest : x));
     return y == 0.0f ? 1.0f : (x < smallest ? 0.0f : r);
+}
+
+struct SinCos {
+    float sin, cos;
+};
+
+/// Sine and cosine of an angle in degrees, exact at whole quarters of a circle. Absolute error
+/// below 1e-7 up to 360, 1e-7 + |degrees| 2^-30 up to 1e6 (tested).
+///
+/// Taylor series in [-45, 45] degrees, cut after the ninth and eighth power, where the rest is
+/// below 3e-8; quarters are taken out in degrees, where they are whole numbers.
+ESTARA_KERNEL SinCos sincos_degrees(float degrees) noexcept {
+    const float quarters = std::floor(degrees / 90.0f + 0.5f);
+    const float x = (degrees - 90.0f * quarters) * 0.0174532925f;
+    const float x2 = x * x;
+    const float s = x * (1.0f - x2 / 6 * (1.0f - x2 / 20 * (1.0f - x2 / 42 * (1.0f - x2 / 72))));
+    const float c = 1.0f - x2 / 2 * (1.0f - x2 / 12 * (1.0f - x2 / 30 * (1.0f - x2 / 56)));
+    const int quarter = int(quarters) & 3;
+    const bool odd = (quarter & 1) != 0;
+    const float sine = odd ? c : s, cosine = odd ? s : c;
+    return {(quarter & 2) != 0 ? -sine : sine, quarter == 1 || quarter == 2 ? -cosine : cosine};
+}
+
+/// v at unit length, or `otherwise` where v is too short or too long to tell its direction.
+ESTARA_KERNEL glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
+    const float length2 = glm::dot(v, v);
+    const bool usable = length2 > 1e-30f && length2 < 1e30f;
+    const float scale = 1.0f / std::sqrt(usable ? length2 : 1.0f);
+    return select(usable, v * scale, otherwise);
 }
 
 }  // namespace estara

@@ -121,6 +121,74 @@ ESTARA_KERNEL float snoise(const glm::vec3& p, std::uint32_t seed = 0) noexcept 
     return 0.936f * lerp(fade(z), near, far);
 }
 
+/// Noise with its gradient.
+struct NoiseSlope {
+    float value;
+    glm::vec3 gradient;  ///< change of value with the point, up to about 4 in length
+};
+
+namespace detail {
+
+/// The vector whose product with (x, y, z) is gradient(h, x, y, z).
+ESTARA_KERNEL glm::vec3 gradient_vector(std::uint32_t h) noexcept {
+    const std::uint32_t c = h & 15u;
+    const float u = signed_by(h, 1.0f), v = signed_by(h >> 1, 1.0f);
+    const bool v_is_x = c == 12u || c == 14u;
+    return {select(c < 8u, u, 0.0f) + select(v_is_x, v, 0.0f),
+            select(c < 8u, 0.0f, u) + select(c < 4u, v, 0.0f),
+            select(c < 4u, 0.0f, select(v_is_x, 0.0f, v))};
+}
+
+/// What a corner of the lattice adds at an offset from it, and its gradient.
+ESTARA_KERNEL NoiseSlope corner(std::uint32_t h, float x, float y, float z) noexcept {
+    return {gradient(h, x, y, z), gradient_vector(h)};
+}
+
+ESTARA_KERNEL glm::vec3 lerp(float t, const glm::vec3& a, const glm::vec3& b) noexcept {
+    return a + t * (b - a);
+}
+
+/// The derivative of fade().
+ESTARA_KERNEL float fade_slope(float t) noexcept {
+    const float s = t * (1.0f - t);
+    return 30.0f * s * s;
+}
+
+}  // namespace detail
+
+/// snoise(p, seed), to the bit, and its gradient, from one hash a corner. The corners' gradients
+/// are interpolated as their values are, and the weights' own change is added.
+ESTARA_KERNEL NoiseSlope snoise_gradient(const glm::vec3& p, std::uint32_t seed = 0) noexcept {
+    using namespace detail;
+    const Lattice a = lattice(p.x), b = lattice(p.y), c = lattice(p.z);
+    const float x = a.offset, y = b.offset, z = c.offset;
+    const float u = fade(x), v = fade(y), w = fade(z);
+    const int X = a.cell, Y = b.cell, Z = c.cell;
+    const NoiseSlope g000 = corner(hash(X, Y, Z, seed), x, y, z);
+    const NoiseSlope g100 = corner(hash(X + 1, Y, Z, seed), x - 1.0f, y, z);
+    const NoiseSlope g010 = corner(hash(X, Y + 1, Z, seed), x, y - 1.0f, z);
+    const NoiseSlope g110 = corner(hash(X + 1, Y + 1, Z, seed), x - 1.0f, y - 1.0f, z);
+    const NoiseSlope g001 = corner(hash(X, Y, Z + 1, seed), x, y, z - 1.0f);
+    const NoiseSlope g101 = corner(hash(X + 1, Y, Z + 1, seed), x - 1.0f, y, z - 1.0f);
+    const NoiseSlope g011 = corner(hash(X, Y + 1, Z + 1, seed), x, y - 1.0f, z - 1.0f);
+    const NoiseSlope g111 = corner(hash(X + 1, Y + 1, Z + 1, seed), x - 1.0f, y - 1.0f, z - 1.0f);
+
+    const float near0 = lerp(u, g000.value, g100.value), near1 = lerp(u, g010.value, g110.value);
+    const float far0 = lerp(u, g001.value, g101.value), far1 = lerp(u, g011.value, g111.value);
+    const float near = lerp(v, near0, near1), far = lerp(v, far0, far1);
+    const float x_near = lerp(v, g100.value - g000.value, g110.value - g010.value);
+    const float x_far = lerp(v, g101.value - g001.value, g111.value - g011.value);
+    const glm::vec3 of_weights(fade_slope(x) * lerp(w, x_near, x_far),
+                               fade_slope(y) * lerp(w, near1 - near0, far1 - far0),
+                               fade_slope(z) * (far - near));
+    const glm::vec3 near_gradient =
+        lerp(v, lerp(u, g000.gradient, g100.gradient), lerp(u, g010.gradient, g110.gradient));
+    const glm::vec3 far_gradient =
+        lerp(v, lerp(u, g001.gradient, g101.gradient), lerp(u, g011.gradient, g111.gradient));
+    return {0.936f * lerp(w, near, far),
+            0.936f * (lerp(w, near_gradient, far_gradient) + of_weights)};
+}
+
 /// RSL's noise: snoise mapped to [0, 1], mean .5, exactly .5 at lattice points. For glm's float,
 /// vec2 and vec3.
 template <class Point>

@@ -8,10 +8,11 @@
 // comes along: this is what makes the baked half reusable in every frame. A shader may also have
 //
 //     Domain  domain() const noexcept;              what decides its colour; default: Domain::point
-//     float   octave(const SurfacePoint&, int k) const noexcept;  a term of a sum over octaves,
-//     whose
-//                                                   length depends on the filter width: octave_sum
-//     float   octave_frequency() const noexcept;    lattice cells per length in term 0; default: 1
+//     float   octave(const SurfacePoint&, int k) const noexcept;  term k of SurfacePoint's
+//                                                   octave_sum; an OctaveTerm is five of them
+//     float   octave_frequency() const noexcept;    lattice cells per length in term 0, which with
+//                                                   the filter width give their number; default: 1
+//     int     octaves() const noexcept;             their number, where parameters decide it
 //     S       resolved(bool has_uv) const noexcept; settles parameters that depend on the mesh
 //     bool    layered() const noexcept;             see BoundShader::layered(); default: false
 //     bool    perturbs_normal() const noexcept;     whether its normal channel, the last one, is
@@ -53,9 +54,15 @@ struct Channel {
     ChannelKind kind = ChannelKind::value;
 };
 
-/// Whether S has a sum over octaves; is_shader() refuses an octave() of another form.
+/// Whether S has sums over octaves, of one number or of five; is_shader() refuses an octave() of
+/// another form.
 template <class S>
-concept HasOctaves = requires(const S& shader, const SurfacePoint& x) {
+concept HasFiveSums = requires(const S& shader, const SurfacePoint& x) {
+    { shader.octave(x, 0) }
+    noexcept->std::same_as<OctaveTerm>;
+};
+template <class S>
+concept HasOctaves = HasFiveSums<S> || requires(const S& shader, const SurfacePoint& x) {
     { shader.octave(x, 0) }
     noexcept->std::same_as<float>;
 };
@@ -123,7 +130,8 @@ consteval bool is_shader() {
         "a channel that is a normal or a direction is a vec3, and a normal is the last channel");
     static_assert(
         HasOctaves<S> || !requires { &S::octave; },
-        "octave() takes a SurfacePoint and an int and returns a float; it is const and noexcept");
+        "octave() takes a SurfacePoint and an int and returns a float or an OctaveTerm; it is "
+        "const and noexcept");
     return true;
 }
 

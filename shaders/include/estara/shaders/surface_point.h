@@ -20,10 +20,18 @@ struct SurfacePoint {
     /// is baked or evaluated directly. Never a pixel's width: that changes from frame to frame.
     float filter_width;
 
-    /// Sum of the shader's octave(x, k) over the octaves that filter_width leaves room for; 0 for a
-    /// shader without octave(). Summed up before bake(), because a loop of varying length inside it
-    /// would keep the loop over points from being made wide.
+    /// Sum of the shader's octave(x, k) over the octaves that filter_width leaves room for, or of
+    /// as many as its octaves() says; 0 for a shader without octave(). Summed up before bake(),
+    /// because a loop of varying length inside it would keep the loop over points from being made
+    /// wide.
     float octave_sum;
+    glm::vec4 octave_more{0.0f};  ///< likewise, of OctaveTerm::more
+};
+
+/// A term of five sums over octaves at once.
+struct OctaveTerm {
+    float value;
+    glm::vec4 more;
 };
 
 }  // namespace estara
