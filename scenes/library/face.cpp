@@ -23,8 +23,8 @@ using glm::vec3;
 constexpr double degree = std::numbers::pi / 180.0;
 
 // The eyes. The lids are a ball a little larger than the eyeball, opened by an almond.
-const dvec3 eye_centre(0.32, 0.0, 0.585);  // of the left one, as all that comes in pairs
-constexpr double eyeball = 0.14, lid = 0.163;
+const dvec3 eye_centre(0.32, 0.0, 0.575);  // of the left one, as all that comes in pairs
+constexpr double eyeball = 0.15, lid = 0.174;
 
 struct Arc {
     double half_width, height;
@@ -34,7 +34,7 @@ struct Arc {
 
 /// The almond between the lids, seen from the front; relative to the eye's centre.
 double almond(const dvec2& p) {
-    constexpr Arc upper{0.14, 0.058}, lower{0.14, 0.05};
+    constexpr Arc upper{0.152, 0.066}, lower{0.152, 0.052};
     constexpr double slant = 4 * degree;  // the outer corner is higher
     const dvec2 q(p.x * std::cos(slant) + p.y * std::sin(slant),
                   p.y * std::cos(slant) - p.x * std::sin(slant));
@@ -54,15 +54,20 @@ double rope(const dvec3& p, const dvec3 (&points)[N], const double (&radii)[N], 
     return d;
 }
 
+/// d with a groove. @param away  distance to the groove's bottom line, as seen from outside
+double grooved(double d, double away, double width, double depth) {
+    return d + depth * std::exp(-(away / width) * (away / width));
+}
+
 double skull(const dvec3& p, const dvec3& side) {
     double d = ellipsoid(p, {0, 0.32, -0.12}, {0.74, 0.80, 0.92});
     d = blended(d, ellipsoid(p, {0, 0.40, 0.30}, {0.60, 0.54, 0.55}), 0.2);
     d = blended(d, ellipsoid(p, {0, -0.35, 0.22}, {0.53, 0.74, 0.58}), 0.2);
-    d = blended(d, capsule(side, {0.49, -0.60, 0.04}, 0.15, {0.12, -0.97, 0.63}, 0.15), 0.2);
+    d = blended(d, capsule(side, {0.49, -0.58, 0.06}, 0.15, {0.13, -0.98, 0.64}, 0.15), 0.2);
     d = blended(d, ellipsoid(side, {0.07, -0.99, 0.68}, {0.19, 0.155, 0.17}), 0.14);
     d = blended(d, ellipsoid(side, {0.45, -0.16, 0.47}, {0.19, 0.14, 0.25}), 0.2);
     d = blended(d, capsule(side, {0.50, -0.12, 0.50}, 0.09, {0.68, -0.04, 0.05}, 0.08), 0.16);
-    d = blended(d, ellipsoid(side, {0.34, -0.47, 0.54}, {0.23, 0.27, 0.23}), 0.2);
+    d = blended(d, ellipsoid(side, {0.33, -0.50, 0.53}, {0.24, 0.30, 0.23}), 0.2);
     d = blended(d, ellipsoid(p, {0, -0.62, 0.60}, {0.34, 0.30, 0.27}), 0.15);
     d = carved(d, ellipsoid(side, {0.86, 0.25, 0.45}, {0.2, 0.25, 0.3}), 0.2);  // temple
     return d;
@@ -78,14 +83,12 @@ double with_eyes(double d, const dvec3& p, const dvec3& side) {
     const dvec3 q = side - eye_centre;
     const double ball = glm::length(q);
     d = blended(d, ball - lid, 0.07);
-    // The fold above the upper lid, and a shallow one under the eye.
-    const dvec3 fold[]{
-        {-0.135, 0.035, 0.10}, {-0.06, 0.093, 0.135}, {0.03, 0.102, 0.13}, {0.15, 0.045, 0.06}};
-    d = carved(d, rope(q, fold, {0.004, 0.010, 0.010, 0.004}, 0.01), 0.035);
-    const dvec3 bag[]{{-0.12, -0.09, 0.12}, {0.0, -0.135, 0.13}, {0.13, -0.10, 0.07}};
-    d = carved(d, rope(q, bag, {0.005, 0.012, 0.005}, 0.02), 0.06);
+    // The fold above the upper lid follows its edge.
+    const double fold = std::abs(almond(dvec2(q)) - 0.042);
+    d = grooved(d, fold, 0.011,
+                0.014 * glm::smoothstep(0.0, 0.05, q.y) * glm::smoothstep(-0.1, 0.05, q.z));
     // Carved to just below the eyeball's surface: what it does not cover shows as the corners.
-    const double opening = std::max({almond(dvec2(q)), 0.131 - ball, -q.z});
+    const double opening = std::max({almond(dvec2(q)), 0.141 - ball, -q.z});
     d = carved(d, opening, 0.014);
     (void)p;
     return d;
@@ -98,25 +101,28 @@ double with_nose(double d, const dvec3& p, const dvec3& side) {
     d = blended(d, ellipsoid(side, {0.125, -0.395, 0.86}, {0.075, 0.075, 0.115}), 0.06);
     d = blended(d, capsule(p, {0, -0.42, 0.97}, 0.045, {0, -0.46, 0.82}, 0.05), 0.05);
     d = carved(d, ellipsoid(side, {0.07, -0.475, 0.90}, {0.036, 0.05, 0.065}), 0.03);  // nostril
-    // The groove around the wing, down to the corner of the mouth.
-    const dvec3 fold[]{
-        {0.185, -0.34, 0.84}, {0.225, -0.42, 0.845}, {0.30, -0.56, 0.80}, {0.34, -0.68, 0.74}};
-    d = carved(d, rope(side, fold, {0.012, 0.016, 0.012, 0.004}, 0.02), 0.08);
-    return d;
+    // The groove from the wing down beside the mouth.
+    const dvec3 fold[]{{0.20, -0.37, 0}, {0.235, -0.45, 0}, {0.30, -0.57, 0}, {0.335, -0.68, 0}};
+    const double along = glm::smoothstep(-0.74, -0.46, p.y) * glm::smoothstep(0.3, 0.6, p.z);
+    return grooved(d, rope({side.x, side.y, 0}, fold, {0, 0, 0, 0}, 0.02), 0.045, 0.016 * along);
 }
 
+const dvec3 upper_lip[]{
+    {0.0, -0.612, 0.888}, {0.055, -0.605, 0.885}, {0.14, -0.622, 0.845}, {0.215, -0.645, 0.775}};
+const dvec3 lower_lip[]{
+    {0.0, -0.698, 0.862}, {0.08, -0.693, 0.852}, {0.15, -0.670, 0.82}, {0.21, -0.650, 0.772}};
+
 double with_mouth(double d, const dvec3& p, const dvec3& side) {
-    d = carved(d, capsule(p, {0, -0.46, 0.925}, 0.018, {0, -0.55, 0.93}, 0.026), 0.05);  // philtrum
-    const dvec3 upper[]{
-        {0.0, -0.600, 0.885}, {0.055, -0.592, 0.882}, {0.15, -0.615, 0.84}, {0.235, -0.640, 0.765}};
-    d = blended(d, rope(side, upper, {0.046, 0.052, 0.042, 0.018}, 0.03), 0.035);
-    const dvec3 lower[]{
-        {0.0, -0.700, 0.865}, {0.08, -0.695, 0.855}, {0.16, -0.670, 0.82}, {0.225, -0.648, 0.765}};
-    d = blended(d, rope(side, lower, {0.066, 0.064, 0.046, 0.018}, 0.03), 0.04);
-    const dvec3 line[]{
-        {0.0, -0.645, 0.945}, {0.06, -0.638, 0.935}, {0.14, -0.645, 0.89}, {0.265, -0.648, 0.78}};
-    d = carved(d, rope(side, line, {0.010, 0.010, 0.010, 0.012}, 0.01), 0.03);
-    d = carved(d, glm::length(side - dvec3(0.275, -0.652, 0.765)) - 0.02, 0.06);  // corner
+    d = grooved(d, std::abs(p.x), 0.035,
+                0.020 * glm::smoothstep(-0.61, -0.56, p.y) * glm::smoothstep(-0.44, -0.50, p.y) *
+                    glm::smoothstep(0.6, 0.8, p.z));  // philtrum
+    d = blended(d, rope(side, upper_lip, {0.040, 0.046, 0.036, 0.014}, 0.03), 0.035);
+    d = blended(d, rope(side, lower_lip, {0.062, 0.060, 0.042, 0.014}, 0.03), 0.04);
+    const dvec3 line[]{{0.0, -0.652, 0}, {0.06, -0.647, 0}, {0.14, -0.652, 0}, {0.225, -0.655, 0}};
+    d = grooved(d, rope({side.x, side.y, 0}, line, {0, 0, 0, 0}, 0.0), 0.015,
+                0.034 * glm::smoothstep(0.3, 0.6, p.z));
+    d = grooved(d, glm::length(dvec2(side) - dvec2(0.245, -0.657)), 0.035,
+                0.018 * glm::smoothstep(0.3, 0.6, p.z));
     d = carved(d, capsule(side, {0.0, -0.80, 0.91}, 0.05, {0.14, -0.79, 0.84}, 0.03), 0.1);
     return d;
 }
@@ -132,10 +138,10 @@ double with_ear(double d, const dvec3& side) {
     const dvec3 helix[]{{-0.05, -0.03, 0.02}, {-0.10, 0.08, 0.03},  {-0.08, 0.20, 0.035},
                         {0.01, 0.285, 0.045}, {0.12, 0.26, 0.05},   {0.185, 0.14, 0.05},
                         {0.18, 0.0, 0.045},   {0.125, -0.13, 0.03}, {0.05, -0.235, 0.015},
-                        {-0.03, -0.30, 0.0}};
+                        {-0.02, -0.27, 0.0}};
     ear = blended(
         ear,
-        rope(q, helix, {0.022, 0.026, 0.028, 0.030, 0.032, 0.032, 0.03, 0.028, 0.035, 0.045}, 0.02),
+        rope(q, helix, {0.022, 0.026, 0.028, 0.030, 0.032, 0.032, 0.03, 0.026, 0.028, 0.032}, 0.02),
         0.025);
     const dvec3 antihelix[]{{0.03, 0.18, 0.03},
                             {0.09, 0.10, 0.045},
@@ -149,10 +155,10 @@ double with_ear(double d, const dvec3& side) {
 }
 
 double with_neck(double d, const dvec3& p, const dvec3& side) {
-    d = blended(d, capsule(p, {0, -0.45, -0.30}, 0.50, {0, -2.3, -0.42}, 0.60), 0.2);
-    d = blended(d, capsule(side, {0.56, -0.50, -0.22}, 0.09, {0.10, -2.0, 0.13}, 0.09), 0.12);
-    d = blended(d, ellipsoid(p, {0, -1.42, 0.15}, {0.10, 0.16, 0.12}), 0.16);  // larynx
-    d = blended(d, capsule(side, {0.28, -1.1, -0.62}, 0.26, {1.0, -2.2, -0.55}, 0.26), 0.3);
+    d = blended(d, capsule(p, {0, -0.45, -0.32}, 0.46, {0, -2.3, -0.42}, 0.55), 0.2);
+    d = blended(d, capsule(side, {0.54, -0.52, -0.24}, 0.085, {0.10, -2.0, 0.10}, 0.085), 0.12);
+    d = blended(d, ellipsoid(p, {0, -1.42, 0.11}, {0.09, 0.15, 0.11}), 0.16);  // larynx
+    d = blended(d, capsule(side, {0.25, -1.1, -0.62}, 0.22, {0.62, -2.2, -0.55}, 0.26), 0.3);
     return std::max(d, -2.25 - p.y);
 }
 
@@ -199,21 +205,54 @@ double hair(const dvec3& p) {
     return -blended(-d, -(0.8 * (hairline(p.z) - p.y)), 0.12);
 }
 
-/// Shoulders and chest in a garment with folds and a collar.
+/// Shoulders and chest in a garment that falls in folds from a rolled collar.
 double garment(const dvec3& p) {
     const dvec3 side = left_side(p);
-    double d = ellipsoid(p, {0, -3.0, -0.35}, {1.45, 0.95, 0.80});
-    d = blended(d, capsule(side, {0.45, -2.15, -0.48}, 0.42, {1.55, -2.55, -0.50}, 0.42), 0.3);
-    d = blended(d, capsule(side, {1.55, -2.55, -0.50}, 0.45, {1.75, -3.6, -0.45}, 0.40), 0.2);
-    const double along = 0.9 * p.x + 0.55 * std::sin(1.3 * p.x) - 1.6 * p.y - 0.6 * p.z;
-    d -= 0.03 * std::sin(7.0 * along) + 0.015 * std::sin(13.0 * along + 4.0 * p.x + 1.0);
-    const double lower = p.z * 0.55;  // the collar dips in front
-    const double neck = capsule(p, {0, -1.0, -0.34}, 0.66, {0, -2.6, -0.40}, 0.80);
-    const double roll = std::abs(neck) - 0.085;
-    const double ring = std::max(roll, std::abs(p.y + 1.98 + lower) - 0.16);
-    d = blended(d, ring - 0.04, 0.12);
-    d = carved(d, std::max(neck + 0.06, -2.5 - p.y), 0.05);
-    return std::max(d * 0.8, -3.4 - p.y);
+    double d = ellipsoid(p, {0, -2.95, -0.30}, {1.40, 0.90, 0.78});
+    d = blended(d, capsule(side, {0.30, -2.22, -0.45}, 0.46, {1.55, -2.55, -0.50}, 0.40), 0.3);
+    d = blended(d, capsule(side, {1.55, -2.55, -0.50}, 0.42, {1.75, -3.6, -0.45}, 0.38), 0.2);
+    d = blended(d, ellipsoid(p, {0, -2.0, -0.42}, {0.85, 0.30, 0.62}), 0.25);
+    const double across = std::sqrt(p.x * p.x + 0.06);
+    const double along = p.y + 0.62 * across + 0.12 * std::sin(2.0 * p.x + 0.7);
+    const double loose = glm::smoothstep(-1.95, -2.45, p.y);
+    d -= loose * (0.040 * std::sin(10.0 * along) + 0.016 * std::sin(23.0 * along + 2.0 * p.x));
+    // The collar lies on the neck like a ring that dips in front.
+    constexpr double tilt = 20 * degree;
+    const dvec3 c = p - dvec3(0, -1.86, -0.33);
+    const dvec3 q(c.x, c.y * std::cos(tilt) + c.z * std::sin(tilt),
+                  c.z * std::cos(tilt) - c.y * std::sin(tilt));
+    const double tube = 0.13 + 0.02 * std::sin(5.0 * std::atan2(q.x, q.z) + 6.0 * q.y);
+    d = blended(d, glm::length(dvec2(glm::length(dvec2(q.x, q.z)) - 0.66, q.y)) - tube, 0.10);
+    return std::max(d * 0.85, -3.4 - p.y);
+}
+
+/// The red of the lips lies on the head like paint.
+double lips(const dvec3& p) {
+    const dvec3 side = left_side(p);
+    const double red = std::min(rope(side, upper_lip, {0.046, 0.055, 0.045, 0.018}, 0.03),
+                                rope(side, lower_lip, {0.068, 0.066, 0.046, 0.018}, 0.03));
+    return std::max(head(p) - 0.0025, red);
+}
+
+/// Eyebrows and the dark line of the lashes.
+double brows(const dvec3& p) {
+    const dvec3 side = left_side(p);
+    const dvec2 flat(side);
+    const dvec3 arc[]{{0.10, 0.175, 0}, {0.24, 0.225, 0}, {0.39, 0.225, 0}, {0.53, 0.150, 0}};
+    const double brow = rope({flat, 0}, arc, {0.034, 0.040, 0.030, 0.008}, 0.02);
+    const double strands =
+        std::sin(170.0 * (flat.x - 0.55 * flat.y + 0.02 * std::sin(14.0 * flat.x)));
+    const double raised = head(p) - 0.016 - 0.0035 * strands;
+    const double hairs = -blended(-raised, -0.5 * brow, 0.03);
+    const dvec3 q = side - eye_centre;
+    const double rim = std::abs(almond(dvec2(q)) - 0.003) - 0.007;
+    const double lashes = std::max({head(p) - 0.005, rim, 0.012 - 0.07 * q.x - q.y});
+    return std::max(std::min(hairs, lashes), 0.3 - p.z);
+}
+
+Material lip_skin(bool second) {
+    const dvec3 red = second ? dvec3(0.42, 0.20, 0.17) : dvec3(0.66, 0.36, 0.34);
+    return {"lips", "RCSkin", {{"skincolor", {red.r, red.g, red.b}}, {"oily", {3}}}, red};
 }
 
 Material skin(bool second) {
@@ -243,6 +282,10 @@ const Material dark_marble{"dark marble",
                             {"Ks", {0.25}},
                             {"roughness", {0.08}}},
                            dvec3(0.08, 0.045, 0.02)};
+const Material brown{"brown",
+                     "plastic",
+                     {{"Ka", {0.3}}, {"Kd", {0.7}}, {"Ks", {0.1}}, {"Cs", {0.07, 0.04, 0.025}}},
+                     dvec3(0.07, 0.04, 0.025)};
 const Material iris{"iris",
                     "greenmarble",
                     {{"darkcolor", {0.01, 0.05, 0.035}},
@@ -301,14 +344,18 @@ void add_eyes(GlbBuilder& out) {
 Mesh backdrop() {
     const auto at = [](double u, double v) {
         const double angle = (270.0 + 85.0 * (1.0 - 2.0 * u)) * degree;
-        return dvec3(9.0 * std::cos(angle), 12.0 * v - 6.0, 9.0 * std::sin(angle));
+        return dvec3(15.0 * std::cos(angle), 20.0 * v - 10.0, 15.0 * std::sin(angle));
     };
     return tessellate(at, {160, 40}, {.u = false, .v = false});
 }
 
+/// A lamp that is turned to the head. @param cone  half its opening, radians
 void add_lamp_at(GlbBuilder& out, const std::string& name, const vec3& place, const dvec3& color,
-                 double Cl) {
-    out.add_lamp({name, "point", color, candela_for(Cl, glm::length(place))}, {place});
+                 double Cl, double cone) {
+    const vec3 aim(0, -0.5f, 0);
+    out.add_lamp(
+        {name, "spot", color, candela_for(Cl, glm::distance(place, aim)), 0.5 * cone, cone},
+        {place, looking_along(aim - place)});
 }
 
 void build(GlbBuilder& out, bool second) {
@@ -319,6 +366,14 @@ void build(GlbBuilder& out, bool second) {
     add_piece(out,
               {"hair", dark_marble,
                with_cylindrical_uv(surface_of(hair, head_box, 0.0125), {0, 0, -0.1}), vec3(0)});
+    const DBox mouth_box{{-0.4, -0.9, 0.5}, {0.4, -0.4, 1.1}},
+        brow_box{{-0.7, -0.2, 0.3}, {0.7, 0.4, 1.0}};
+    add_piece(out,
+              {"lips", lip_skin(second),
+               with_cylindrical_uv(surface_of(lips, mouth_box, 0.008), {0, 0, -0.1}), vec3(0)});
+    add_piece(
+        out, {"brows", brown, with_cylindrical_uv(surface_of(brows, brow_box, 0.006), {0, 0, -0.1}),
+              vec3(0)});
     const DBox garment_box{{-2.6, -3.7, -1.7}, {2.6, -1.4, 1.2}};
     add_piece(out,
               {"garment", marble,
@@ -326,9 +381,9 @@ void build(GlbBuilder& out, bool second) {
     add_eyes(out);
     add_piece(out, {"wall", wall, backdrop(), vec3(0)});
 
-    add_lamp_at(out, "key", {-5.0f, 4.5f, 6.5f}, {1.0, 0.92, 0.82}, 1.5);
-    add_lamp_at(out, "fill", {6.5f, 0.5f, 5.0f}, {0.75, 0.86, 1.0}, 0.45);
-    add_lamp_at(out, "rim", {4.0f, 4.0f, -5.5f}, {0.85, 0.92, 1.0}, 1.3);
+    add_lamp_at(out, "key", {-5.0f, 4.5f, 6.5f}, {1.0, 0.92, 0.82}, 1.5, 0.42);
+    add_lamp_at(out, "fill", {6.5f, 0.5f, 5.0f}, {0.75, 0.86, 1.0}, 0.45, 0.9);
+    add_lamp_at(out, "rim", {4.0f, 4.0f, -5.5f}, {0.85, 0.92, 1.0}, 1.6, 0.5);
     out.set_ambient(dvec3(0.35, 0.36, 0.40));
 
     std::vector<Shot> shots;

@@ -96,11 +96,11 @@ Material enamel_in(const char* name, const dvec3& base, const dvec3& specks) {
             base};
 }
 
-const Material oak = wood_in("oak", {0.42, 0.24, 0.11}, {0.24, 0.12, 0.05}, 26);
-const Material oak_dark = wood_in("smoked oak", {0.34, 0.18, 0.08}, {0.18, 0.085, 0.035}, 30);
-const Material oak_pale = wood_in("pale oak", {0.50, 0.30, 0.15}, {0.30, 0.16, 0.07}, 22);
-const Material walnut = wood_in("walnut", {0.22, 0.105, 0.045}, {0.085, 0.035, 0.014}, 30, 0.4);
-const Material beam_oak = wood_in("beam oak", {0.20, 0.11, 0.055}, {0.10, 0.05, 0.022}, 24, 0.08);
+const Material oak = wood_in("oak", {0.42, 0.24, 0.11}, {0.24, 0.12, 0.05}, 110);
+const Material oak_dark = wood_in("smoked oak", {0.34, 0.18, 0.08}, {0.18, 0.085, 0.035}, 120);
+const Material oak_pale = wood_in("pale oak", {0.50, 0.30, 0.15}, {0.30, 0.16, 0.07}, 95);
+const Material walnut = wood_in("walnut", {0.22, 0.105, 0.045}, {0.085, 0.035, 0.014}, 120, 0.4);
+const Material beam_oak = wood_in("beam oak", {0.20, 0.11, 0.055}, {0.10, 0.05, 0.022}, 90, 0.08);
 const Material plaster = plastic_in("plaster", {0.66, 0.60, 0.50});
 const Material ceiling_white = plastic_in("ceiling white", {0.72, 0.69, 0.63});
 const Material brass = plastic_in("brass", {0.42, 0.28, 0.09}, 0.35, 0.9, 0.06);
@@ -111,6 +111,9 @@ const Material sandstone{"sandstone",
                           {"blockwidth", {0.46}},
                           {"blockheight", {0.23}},
                           {"mortarthickness", {0.012}},
+                          {"blockcolor", {0.68, 0.60, 0.46}},
+                          {"mortarcolor", {0.50, 0.45, 0.36}},
+                          {"blockvary", {0.22}},
                           {"Ka", {0.35}},
                           {"Kd", {0.75}}},
                          dvec3(0.60, 0.55, 0.45)};
@@ -120,6 +123,10 @@ const Material brick{"brick",
                       {"blockwidth", {0.22}},
                       {"blockheight", {0.075}},
                       {"mortarthickness", {0.010}},
+                      {"blockcolor", {0.46, 0.21, 0.13}},
+                      {"mortarcolor", {0.42, 0.38, 0.33}},
+                      {"blockvary", {0.45}},
+                      {"bump", {1}},
                       {"Ka", {0.35}},
                       {"Kd", {0.75}}},
                      dvec3(0.42, 0.20, 0.13)};
@@ -252,7 +259,7 @@ void add_floor(Room& room) {
     for (unsigned i = 0; i < std::size(kinds); ++i)
         boards.push_back(room.model(
             "board " + std::to_string(i), *kinds[i],
-            rounded_box({0.5 * (length - gap), 0.011, 0.5 * (width - gap)}, 0.002, 1, 1), 0.8f,
+            rounded_box({0.5 * (length - gap), 0.011, 0.5 * (width - gap)}, 0.002, 1, 1), 0.5f,
             {3.0f * float(i), 0.22f + 0.2f * scatter(i), 0.5f * scatter(i + 50) - 0.25f}));
     unsigned n = 0;
     for (int row = 0; row < 46; ++row) {
@@ -371,7 +378,7 @@ void add_courtyard(Room& room) {
         const double angle = (-80 + 160 * u) * double(degree);
         return dvec3(3.0 + 22.0 * std::cos(angle), -1.0 + 13.0 * v, -2.0 + 22.0 * std::sin(angle));
     };
-    room.put("sky", plastic_in("sky", {0.50, 0.70, 0.98}, 5.5),
+    room.put("sky", plastic_in("sky", {0.50, 0.70, 0.98}, 2.2),
              tessellate(sky, {60, 8}, {.u = false, .v = false}), vec3(0));
 }
 
@@ -434,7 +441,7 @@ void add_fireplace(Room& room) {
         room.put(
             "flame " + std::to_string(i),
             plastic_in(i % 2 ? "flame" : "inner flame",
-                       i % 2 ? dvec3(1.0, 0.38, 0.06) : dvec3(1.0, 0.62, 0.16), 8.0),
+                       i % 2 ? dvec3(1.0, 0.33, 0.04) : dvec3(1.0, 0.55, 0.10), 4.0),
             scaled(tongue, size),
             {fire_x - 0.22f + 0.11f * float(i), 0.20f, back + 0.24f + 0.05f * scatter(unsigned(i))},
             turned(10.0f * (scatter(unsigned(i) + 3) - 0.5f), z_axis));
@@ -624,7 +631,7 @@ Mesh lamp_shade(double below, double above, double tall) {
     return lathe(profile, {96, 40});
 }
 
-const Material lit_shade = plastic_in("lit shade", {0.95, 0.68, 0.36}, 2.6);
+const Material lit_shade = plastic_in("lit shade", {0.95, 0.68, 0.36}, 2.0);
 
 void add_lamps(Room& room, const vec3& floor_lamp, const vec3& table_lamp) {
     const dvec2 stand[]{{0, 0},        {0.14, 0},    {0.15, 0.004}, {0.13, 0.02}, {0.03, 0.035},
@@ -759,15 +766,15 @@ void add_rug(Room& room, const vec3& place) {
 
 void add_lights(GlbBuilder& out, const vec3& floor_lamp, const vec3& table_lamp) {
     const dvec3 bulb(1.0, 0.70, 0.40);
-    out.add_lamp({"sun", "directional", dvec3(1.0, 0.90, 0.74), lux_for(2.6)},
+    out.add_lamp({"sun", "directional", dvec3(1.0, 0.90, 0.74), lux_for(3.2)},
                  {vec3(0), looking_along({-0.80f, -0.56f, -0.22f})});
-    out.add_lamp({"floor bulb", "point", bulb, candela_for(0.42, 2.0)},
+    out.add_lamp({"floor bulb", "point", bulb, candela_for(0.75, 2.0)},
                  {floor_lamp + vec3(0, 1.56f, 0)});
-    out.add_lamp({"table bulb", "point", bulb, candela_for(0.22, 2.0)},
+    out.add_lamp({"table bulb", "point", bulb, candela_for(0.42, 2.0)},
                  {table_lamp + vec3(0, 0.38f, 0)});
-    out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.30, 1.5)},
+    out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.75, 1.5)},
                  {vec3(fire_x, 0.50f, breast_front + 0.02f)});
-    out.set_ambient(dvec3(0.34, 0.38, 0.46));
+    out.set_ambient(dvec3(0.60, 0.62, 0.68));
 }
 
 void build(GlbBuilder& out) {
