@@ -34,7 +34,7 @@ struct Arc {
 
 /// The almond between the lids, seen from the front; relative to the eye's centre.
 double almond(const dvec2& p) {
-    constexpr Arc upper{0.152, 0.066}, lower{0.152, 0.052};
+    constexpr Arc upper{0.152, 0.059}, lower{0.152, 0.052};
     constexpr double slant = 4 * degree;  // the outer corner is higher
     const dvec2 q(p.x * std::cos(slant) + p.y * std::sin(slant),
                   p.y * std::cos(slant) - p.x * std::sin(slant));
@@ -68,8 +68,10 @@ double skull(const dvec3& p, const dvec3& side) {
     d = blended(d, ellipsoid(side, {0.45, -0.16, 0.47}, {0.19, 0.14, 0.25}), 0.2);
     d = blended(d, capsule(side, {0.50, -0.12, 0.50}, 0.09, {0.68, -0.04, 0.05}, 0.08), 0.16);
     d = blended(d, ellipsoid(side, {0.33, -0.50, 0.53}, {0.24, 0.30, 0.23}), 0.2);
+    d = blended(d, ellipsoid(side, {0.46, -0.36, 0.20}, {0.18, 0.42, 0.36}), 0.2);  // masseter
+    d = blended(d, ellipsoid(side, {0.50, -0.30, -0.18}, {0.17, 0.40, 0.30}), 0.2);
     d = blended(d, ellipsoid(p, {0, -0.62, 0.60}, {0.34, 0.30, 0.27}), 0.15);
-    d = carved(d, ellipsoid(side, {0.86, 0.25, 0.45}, {0.2, 0.25, 0.3}), 0.2);  // temple
+    d = carved(d, ellipsoid(side, {0.90, 0.25, 0.45}, {0.2, 0.25, 0.3}), 0.2);  // temple
     return d;
 }
 
@@ -77,7 +79,7 @@ double with_eyes(double d, const dvec3& p, const dvec3& side) {
     d = carved(d, ellipsoid(side, {0.31, 0.0, 0.87}, {0.20, 0.14, 0.20}), 0.16);  // socket
     const double brow =
         blended(capsule(side, {0.10, 0.19, 0.77}, 0.07, {0.36, 0.24, 0.70}, 0.075),
-                capsule(side, {0.36, 0.24, 0.70}, 0.075, {0.55, 0.15, 0.50}, 0.06), 0.05);
+                capsule(side, {0.36, 0.24, 0.70}, 0.075, {0.54, 0.16, 0.47}, 0.03), 0.05);
     d = blended(d, brow, 0.13);
 
     const dvec3 q = side - eye_centre;
@@ -130,7 +132,7 @@ double with_mouth(double d, const dvec3& p, const dvec3& side) {
 double with_ear(double d, const dvec3& side) {
     // The ear's own plane: x backwards, y up, z out of the head.
     constexpr double flare = 28 * degree;
-    const dvec3 s = side - dvec3(0.735, -0.09, -0.06);
+    const dvec3 s = side - dvec3(0.685, -0.09, -0.06);
     const dvec3 q(-s.z * std::cos(flare) + s.x * std::sin(flare), s.y,
                   s.x * std::cos(flare) + s.z * std::sin(flare));
     if (glm::length(q) > 0.6) return d;
@@ -251,22 +253,28 @@ double brows(const dvec3& p) {
 }
 
 Material lip_skin(bool second) {
-    const dvec3 red = second ? dvec3(0.42, 0.20, 0.17) : dvec3(0.66, 0.36, 0.34);
-    return {"lips", "RCSkin", {{"skincolor", {red.r, red.g, red.b}}, {"oily", {3}}}, red};
+    const dvec3 red = second ? dvec3(0.33, 0.13, 0.10) : dvec3(0.66, 0.29, 0.26);
+    return {"lips", "RCSkin", {{"skincolor", {red.r, red.g, red.b}}, {"oily", {0.7}}}, red};
 }
 
 Material skin(bool second) {
-    if (!second) return {"skin", "RCSkin", {}, dvec3(0.7, 0.56, 0.52)};
+    if (!second)
+        return {"skin",
+                "RCSkin",
+                {{"skincolor", {0.74, 0.52, 0.43}}, {"oily", {1.0}}},
+                dvec3(0.74, 0.52, 0.43)};
     return {"skin",
             "RCSkin",
-            {{"skincolor", {0.50, 0.33, 0.25}},
-             {"blemishthresh", {2.4}},
-             {"oily", {3.5}},
-             {"xrough", {0.22}},
-             {"yrough", {0.34}},
-             {"poresthresh", {2.2}},
-             {"poresdepth", {-0.002}}},
-            dvec3(0.50, 0.33, 0.25)};
+            {{"skincolor", {0.40, 0.245, 0.17}},
+             {"blemishfreq", {8}},
+             {"blemishthresh", {1.8}},
+             {"oily", {1.5}},
+             {"sheenColor", {1.0, 0.85, 0.72}},
+             {"xrough", {0.25}},
+             {"yrough", {0.40}},
+             {"poresthresh", {2.6}},
+             {"poresdepth", {-0.0013}}},
+            dvec3(0.40, 0.245, 0.17)};
 }
 
 const Material marble{"marble",
@@ -279,8 +287,8 @@ const Material dark_marble{"dark marble",
                             {"lightcolor", {0.10, 0.055, 0.03}},
                             {"veincolor", {0.45, 0.28, 0.12}},
                             {"Ka", {0.3}},
-                            {"Ks", {0.25}},
-                            {"roughness", {0.08}}},
+                            {"Ks", {0.2}},
+                            {"roughness", {0.12}}},
                            dvec3(0.08, 0.045, 0.02)};
 const Material brown{"brown",
                      "plastic",
@@ -381,14 +389,14 @@ void build(GlbBuilder& out, bool second) {
     add_eyes(out);
     add_piece(out, {"wall", wall, backdrop(), vec3(0)});
 
-    add_lamp_at(out, "key", {-5.0f, 4.5f, 6.5f}, {1.0, 0.92, 0.82}, 1.5, 0.42);
-    add_lamp_at(out, "fill", {6.5f, 0.5f, 5.0f}, {0.75, 0.86, 1.0}, 0.45, 0.9);
-    add_lamp_at(out, "rim", {4.0f, 4.0f, -5.5f}, {0.85, 0.92, 1.0}, 1.6, 0.5);
+    add_lamp_at(out, "key", {-5.0f, 4.5f, 6.5f}, {1.0, 0.88, 0.74}, 1.7, 0.42);
+    add_lamp_at(out, "fill", {3.0f, -1.5f, 8.5f}, {0.90, 0.93, 1.0}, 0.50, 0.9);
+    add_lamp_at(out, "rim", {4.0f, 4.0f, -5.5f}, {0.80, 0.90, 1.0}, 1.2, 0.5);
     out.set_ambient(dvec3(0.35, 0.36, 0.40));
 
     std::vector<Shot> shots;
     for (const double angle : {-34.0, -25.0, -8.0, 12.0, 26.0, 34.0}) {
-        const double distance = 10.2 - 0.9 * std::cos(2.2 * angle * degree);
+        const double distance = 9.5 - 0.9 * std::cos(2.2 * angle * degree);
         const dvec3 eye(distance * std::sin(angle * degree), 0.35 + 0.006 * angle,
                         distance * std::cos(angle * degree));
         shots.push_back({eye, vec3(0, -0.42, 0.1)});

@@ -68,7 +68,7 @@ Material velvet_in(const char* name, const dvec3& Cs) {
             {{"Cs", {Cs.r, Cs.g, Cs.b}},
              {"Ka", {0.35}},
              {"Kd", {0.7}},
-             {"sheen", {0.5, 0.5, 0.5}},
+             {"sheen", {0.35, 0.35, 0.35}},
              {"edginess", {6}}},
             Cs};
 }
@@ -117,6 +117,14 @@ const Material sandstone{"sandstone",
                           {"Ka", {0.35}},
                           {"Kd", {0.75}}},
                          dvec3(0.60, 0.55, 0.45)};
+Material outdoors(Material material) {
+    material.name += " outdoors";
+    for (auto& [name, value] : material.params)
+        if (name == "Ka") value = {0.9};
+    return material;
+}
+const Material court_sandstone = outdoors(sandstone);
+
 const Material brick{"brick",
                      "blocks",
                      {{"variant", {0}},
@@ -181,7 +189,7 @@ const Material gold_velvet = velvet_in("gold velvet", {0.55, 0.34, 0.08});
 const Material wine_velvet = velvet_in("wine velvet", {0.26, 0.02, 0.05});
 const Material rug_field = carpet_in("rug field", {0.50, 0.10, 0.07}, 1.3, 0.8);
 const Material rug_border = carpet_in("rug border", {0.72, 0.60, 0.40}, 1.3, 0.8);
-const Material foliage = carpet_in("foliage", {0.10, 0.24, 0.05}, 6.0, 12.0);
+const Material foliage = outdoors(carpet_in("foliage", {0.10, 0.24, 0.05}, 6.0, 12.0));
 const Material blue_enamel = enamel_in("blue enamel", {0.03, 0.09, 0.30}, {0.85, 0.87, 0.9});
 const Material cream_enamel = enamel_in("cream enamel", {0.80, 0.74, 0.60}, {0.10, 0.16, 0.34});
 
@@ -341,8 +349,8 @@ void add_window(Room& room) {
         return dvec3(width * (s - 0.5), 2.42 * v,
                      deep * std::sin(phase) + off * (1.0 + 0.5 * held));
     };
-    const Room::Model cloth =
-        room.model("curtain", wine_velvet, tessellate(curtain, {420, 70}, {.u = true, .v = false}));
+    const Room::Model cloth = room.model("curtain", wine_velvet,
+                                         tessellate(curtain, {560, 110}, {.u = true, .v = false}));
     for (const float z : {window_near + 0.16f, window_far - 0.16f})
         room.stand("curtain", cloth, {half_width - 0.17f, 0.03f, z},
                    turned(z > middle ? -90.0f : 90.0f));
@@ -358,7 +366,7 @@ void add_window(Room& room) {
 void add_courtyard(Room& room) {
     room.put("court", court_stone,
              with_metric_uv(between({half_width + 0.26f, -0.6f, -16}, {16, -0.3f, 12})), vec3(0));
-    room.put("court wall", sandstone,
+    room.put("court wall", court_sandstone,
              with_metric_uv(between({10.0f, -0.35f, -16}, {10.4f, 1.55f, 12})), vec3(0));
     room.put("court coping", granite, rounded_box({0.28, 0.05, 13.9}, 0.02, 1, 3),
              {10.2f, 1.6f, -2});
@@ -436,13 +444,14 @@ void add_fireplace(Room& room) {
     const dvec2 flame[]{{0, 0},        {0.05, 0.0},  {0.075, 0.06}, {0.06, 0.15},
                         {0.025, 0.25}, {0.01, 0.32}, {0, 0.36}};
     const Mesh tongue = lathe(flame, {40, 50});
+    // No lamp shines upon flames.
+    Material flames[]{plastic_in("flame", {1.0, 0.42, 0.05}, 2.6),
+                      plastic_in("outer flame", {1.0, 0.2, 0.015}, 2.6)};
+    for (Material& kind : flames) kind.params[1].second = {0.0};
     for (int i = 0; i < 5; ++i) {
         const float size = 0.6f + 0.5f * scatter(unsigned(i) + 7);
         room.put(
-            "flame " + std::to_string(i),
-            plastic_in(i % 2 ? "flame" : "inner flame",
-                       i % 2 ? dvec3(1.0, 0.33, 0.04) : dvec3(1.0, 0.55, 0.10), 4.0),
-            scaled(tongue, size),
+            "flame " + std::to_string(i), flames[i % 2], scaled(tongue, size),
             {fire_x - 0.22f + 0.11f * float(i), 0.20f, back + 0.24f + 0.05f * scatter(unsigned(i))},
             turned(10.0f * (scatter(unsigned(i) + 3) - 0.5f), z_axis));
     }
@@ -768,13 +777,13 @@ void add_lights(GlbBuilder& out, const vec3& floor_lamp, const vec3& table_lamp)
     const dvec3 bulb(1.0, 0.70, 0.40);
     out.add_lamp({"sun", "directional", dvec3(1.0, 0.90, 0.74), lux_for(3.2)},
                  {vec3(0), looking_along({-0.80f, -0.56f, -0.22f})});
-    out.add_lamp({"floor bulb", "point", bulb, candela_for(0.75, 2.0)},
+    out.add_lamp({"floor bulb", "point", bulb, candela_for(1.0, 2.0)},
                  {floor_lamp + vec3(0, 1.56f, 0)});
     out.add_lamp({"table bulb", "point", bulb, candela_for(0.42, 2.0)},
                  {table_lamp + vec3(0, 0.38f, 0)});
     out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.75, 1.5)},
-                 {vec3(fire_x, 0.50f, breast_front + 0.02f)});
-    out.set_ambient(dvec3(0.60, 0.62, 0.68));
+                 {vec3(fire_x, 0.72f, breast_front - 0.14f)});
+    out.set_ambient(dvec3(0.70, 0.71, 0.75));
 }
 
 void build(GlbBuilder& out) {

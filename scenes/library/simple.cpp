@@ -30,7 +30,12 @@ const dvec3 plain(0.5);
 
 // From left to right. The numbers are in object space, which `pattern` makes smaller.
 const Exhibit front[]{
-    {{"skin", "RCSkin", {{"oily", {2.0}}}, dvec3(0.7, 0.56, 0.52)}, Form::ball, 1.0f},
+    {{"skin",
+      "RCSkin",
+      {{"skincolor", {0.68, 0.47, 0.38}}, {"blemishthresh", {2.6}}, {"poresdepth", {-0.0016}}},
+      dvec3(0.68, 0.47, 0.38)},
+     Form::ball,
+     1.0f},
     {{"wood",
       "wood",
       {{"ringscale", {14}}, {"lightwood", {0.5, 0.24, 0.09}}, {"darkwood", {0.14, 0.045, 0.015}}},
@@ -41,18 +46,21 @@ const Exhibit front[]{
       "spatter",
       {{"specksize", {0.008}},
        {"sizes", {4}},
-       {"basecolor", {0.03, 0.10, 0.36}},
+       {"basecolor", {0.02, 0.08, 0.34}},
+       {"Ka", {0.35}},
+       {"Kd", {0.7}},
        {"roughness", {0.05}}},
       dvec3(0.1, 0.15, 0.4)},
      Form::ball,
      1.0f},
     {{"velvet",
       "velvet",
-      {{"Cs", {0.45, 0.03, 0.07}},
+      {{"Cs", {0.36, 0.01, 0.04}},
        {"Ka", {0.3}},
-       {"Kd", {0.5}},
-       {"sheen", {0.7, 0.5, 0.5}},
-       {"edginess", {6}}},
+       {"Kd", {0.38}},
+       {"backscatter", {0.3}},
+       {"sheen", {0.5, 0.22, 0.24}},
+       {"edginess", {8}}},
       dvec3(0.45, 0.03, 0.07)},
      Form::cube,
      1.0f},
@@ -69,7 +77,12 @@ const Exhibit middle[]{
       {{"variant", {0}},
        {"blockwidth", {0.25}},
        {"blockheight", {0.125}},
-       {"mortarthickness", {0.012}}},
+       {"mortarthickness", {0.012}},
+       {"blockcolor", {0.74, 0.52, 0.36}},
+       {"mortarcolor", {0.50, 0.46, 0.42}},
+       {"blockvary", {0.4}},
+       {"Ka", {0.35}},
+       {"Kd", {0.8}}},
       dvec3(0.65, 0.62, 0.56)},
      Form::box,
      1.0f},
@@ -110,7 +123,7 @@ const Exhibit back[]{
 
 const Material clay{"clay",
                     "plastic",
-                    {{"Ka", {0.4}}, {"Kd", {0.7}}, {"Ks", {0}}, {"Cs", {0.34, 0.33, 0.32}}},
+                    {{"Ka", {0.4}}, {"Kd", {0.7}}, {"Ks", {0}}, {"Cs", {0.30, 0.28, 0.265}}},
                     dvec3(0.34, 0.33, 0.32)};
 const Material dusk{"dusk",
                     "plastic",
@@ -128,7 +141,7 @@ Mesh form(Form which, double radius) {
         case Form::box:
             break;
     }
-    return rounded_box(dvec3(0.80 * radius), 0.22 * radius, 24, 12);
+    return with_metric_uv(rounded_box(dvec3(0.80 * radius), 0.22 * radius, 24, 12));
 }
 
 /// A row of exhibits on a step, turned so that cubes show two of their sides.
@@ -177,8 +190,8 @@ void build(GlbBuilder& out) {
     out.set_ambient(dvec3(0.45, 0.47, 0.5));
 
     std::vector<Shot> shots;
-    for (const float angle : {-22.0f, -14.0f, 0.0f, 14.0f, 22.0f}) {
-        const float pitch = degree * (17.0f + 0.15f * angle), distance = 14.5f;
+    for (const float angle : {-18.0f, -12.0f, 0.0f, 12.0f, 18.0f}) {
+        const float pitch = degree * (17.0f + 0.15f * angle), distance = 15.4f;
         const vec3 away(std::sin(degree * angle) * std::cos(pitch), std::sin(pitch),
                         std::cos(degree * angle) * std::cos(pitch));
         shots.push_back({aim + distance * away, aim});
