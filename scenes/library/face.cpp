@@ -68,8 +68,8 @@ double skull(const dvec3& p, const dvec3& side) {
     d = blended(d, ellipsoid(side, {0.45, -0.16, 0.47}, {0.19, 0.14, 0.25}), 0.2);
     d = blended(d, capsule(side, {0.50, -0.12, 0.50}, 0.09, {0.68, -0.04, 0.05}, 0.08), 0.16);
     d = blended(d, ellipsoid(side, {0.33, -0.50, 0.53}, {0.24, 0.30, 0.23}), 0.2);
-    d = blended(d, ellipsoid(side, {0.46, -0.36, 0.20}, {0.18, 0.42, 0.36}), 0.2);  // masseter
-    d = blended(d, ellipsoid(side, {0.50, -0.30, -0.18}, {0.17, 0.40, 0.30}), 0.2);
+    d = blended(d, ellipsoid(side, {0.43, -0.38, 0.24}, {0.18, 0.40, 0.27}), 0.2);  // masseter
+    d = blended(d, ellipsoid(side, {0.43, -0.25, -0.22}, {0.17, 0.36, 0.27}), 0.2);
     d = blended(d, ellipsoid(p, {0, -0.62, 0.60}, {0.34, 0.30, 0.27}), 0.15);
     d = carved(d, ellipsoid(side, {0.90, 0.25, 0.45}, {0.2, 0.25, 0.3}), 0.2);  // temple
     return d;
@@ -79,7 +79,7 @@ double with_eyes(double d, const dvec3& p, const dvec3& side) {
     d = carved(d, ellipsoid(side, {0.31, 0.0, 0.87}, {0.20, 0.14, 0.20}), 0.16);  // socket
     const double brow =
         blended(capsule(side, {0.10, 0.19, 0.77}, 0.07, {0.36, 0.24, 0.70}, 0.075),
-                capsule(side, {0.36, 0.24, 0.70}, 0.075, {0.54, 0.16, 0.47}, 0.03), 0.05);
+                capsule(side, {0.36, 0.24, 0.70}, 0.075, {0.50, 0.17, 0.47}, 0.03), 0.05);
     d = blended(d, brow, 0.13);
 
     const dvec3 q = side - eye_centre;
@@ -132,7 +132,7 @@ double with_mouth(double d, const dvec3& p, const dvec3& side) {
 double with_ear(double d, const dvec3& side) {
     // The ear's own plane: x backwards, y up, z out of the head.
     constexpr double flare = 28 * degree;
-    const dvec3 s = side - dvec3(0.685, -0.09, -0.06);
+    const dvec3 s = side - dvec3(0.71, -0.09, -0.06);
     const dvec3 q(-s.z * std::cos(flare) + s.x * std::sin(flare), s.y,
                   s.x * std::cos(flare) + s.z * std::sin(flare));
     if (glm::length(q) > 0.6) return d;
@@ -358,12 +358,14 @@ Mesh backdrop() {
 }
 
 /// A lamp that is turned to the head. @param cone  half its opening, radians
-void add_lamp_at(GlbBuilder& out, const std::string& name, const vec3& place, const dvec3& color,
-                 double Cl, double cone) {
+Lamp lamp(const std::string& name, const dvec3& color, double cone) {
+    return {name, "spot", color, 1.0, 0.5 * cone, cone};
+}
+
+void add_lamp_at(GlbBuilder& out, Lamp lamp, const vec3& place, double Cl) {
     const vec3 aim(0, -0.5f, 0);
-    out.add_lamp(
-        {name, "spot", color, candela_for(Cl, glm::distance(place, aim)), 0.5 * cone, cone},
-        {place, looking_along(aim - place)});
+    lamp.intensity = candela_for(Cl, glm::distance(place, aim));
+    out.add_lamp(lamp, {place, looking_along(aim - place)});
 }
 
 void build(GlbBuilder& out, bool second) {
@@ -389,13 +391,16 @@ void build(GlbBuilder& out, bool second) {
     add_eyes(out);
     add_piece(out, {"wall", wall, backdrop(), vec3(0)});
 
-    add_lamp_at(out, "key", {-5.0f, 4.5f, 6.5f}, {1.0, 0.88, 0.74}, 1.7, 0.42);
-    add_lamp_at(out, "fill", {3.0f, -1.5f, 8.5f}, {0.90, 0.93, 1.0}, 0.50, 0.9);
-    add_lamp_at(out, "rim", {4.0f, 4.0f, -5.5f}, {0.80, 0.90, 1.0}, 1.2, 0.5);
+    add_lamp_at(out, lamp("key", {1.0, 0.88, 0.74}, 0.42), {-5.0f, 4.5f, 6.5f}, 1.7);
+    // Skin knows no ambient light: the fill stands for it and casts no shadow.
+    Lamp fill = lamp("fill", {0.90, 0.93, 1.0}, 0.9);
+    fill.shadow = false;
+    add_lamp_at(out, fill, {3.0f, -1.0f, 8.5f}, 0.42);
+    add_lamp_at(out, lamp("rim", {0.80, 0.90, 1.0}, 0.5), {4.0f, 4.0f, -5.5f}, 1.2);
     out.set_ambient(dvec3(0.35, 0.36, 0.40));
 
     std::vector<Shot> shots;
-    for (const double angle : {-34.0, -25.0, -8.0, 12.0, 26.0, 34.0}) {
+    for (const double angle : {-27.0, -16.0, -5.0, 6.0, 17.0, 28.0}) {
         const double distance = 9.5 - 0.9 * std::cos(2.2 * angle * degree);
         const dvec3 eye(distance * std::sin(angle * degree), 0.35 + 0.006 * angle,
                         distance * std::cos(angle * degree));

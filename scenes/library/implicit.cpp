@@ -105,15 +105,20 @@ Mesh surface_of(const Solid& solid, const DBox& inside, double edge) {
         mesh.P[i] = p;
         mesh.N[i] = slope(solid, p, 0.5 * edge);
     });
+    const auto add_triangle = [&](glm::uint a, glm::uint b, glm::uint c) {
+        const glm::vec3 &A = mesh.P[a], &B = mesh.P[b], &C = mesh.P[c];
+        // Points may meet on their way to the surface; what they close is closed without it.
+        if (A != B && B != C && C != A) mesh.triangles.emplace_back(a, b, c);
+    };
     for (const openvdb::Vec4I& q : quads) {
         // Cut along the shorter diagonal: bends in a crease stay round.
         const auto length = [&](int a, int b) { return glm::distance(mesh.P[q[a]], mesh.P[q[b]]); };
         if (length(0, 2) < length(1, 3)) {
-            mesh.triangles.emplace_back(q[0], q[2], q[1]);
-            mesh.triangles.emplace_back(q[0], q[3], q[2]);
+            add_triangle(q[0], q[2], q[1]);
+            add_triangle(q[0], q[3], q[2]);
         } else {
-            mesh.triangles.emplace_back(q[0], q[3], q[1]);
-            mesh.triangles.emplace_back(q[1], q[3], q[2]);
+            add_triangle(q[0], q[3], q[1]);
+            add_triangle(q[1], q[3], q[2]);
         }
     }
     return mesh;

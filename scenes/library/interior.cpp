@@ -340,7 +340,7 @@ void add_window(Room& room) {
 
     // Curtains in folds, held back by a band.
     const auto curtain = [](double u, double v) {
-        const double s = 0.5 - 0.5 * std::cos(2 * pi * u), off = 0.010 * std::sin(2 * pi * u);
+        const double s = 0.5 - 0.5 * std::cos(2 * pi * u), off = -0.010 * std::sin(2 * pi * u);
         const double held = std::exp(-std::pow((v - 0.40) / 0.17, 2.0));
         const double width = 0.62 * (1.0 - 0.45 * held);
         const double phase =
@@ -782,7 +782,7 @@ void add_lights(GlbBuilder& out, const vec3& floor_lamp, const vec3& table_lamp)
     out.add_lamp({"table bulb", "point", bulb, candela_for(0.42, 2.0)},
                  {table_lamp + vec3(0, 0.38f, 0)});
     out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.75, 1.5)},
-                 {vec3(fire_x, 0.72f, breast_front - 0.14f)});
+                 {vec3(fire_x, 0.70f, breast_front - 0.06f)});
     out.set_ambient(dvec3(0.70, 0.71, 0.75));
 }
 
