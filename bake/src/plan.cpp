@@ -23,6 +23,35 @@ ShaderChoice choose(const Object& object, const Options& options) {
     return choice;
 }
 
+/// The setting without which the shader would not be layered, or "" if there is none.
+std::string layering_parameter(const ShaderChoice& choice, bool has_uv) {
+    for (const Setting& setting : choice.settings) {
+        std::vector<Setting> others = choice.settings;
+        std::erase_if(others, [&](const Setting& s) { return s.name == setting.name; });
+        const BindResult without = bind_shader(choice.name, others, has_uv);
+        if (without.shader && !without.shader->layered()) return setting.name;
+    }
+    return "";
+}
+
+/// The choice's shader. Error for one that a grid cannot hold.
+BoundShaderPtr bind_solid(const ShaderChoice& choice, bool has_uv) {
+    BoundShaderPtr shader = bind_choice(choice, has_uv);
+    if (!shader->layered()) return shader;
+    const std::string name = layering_parameter(choice, has_uv);
+    std::string action = "; estara-render needs no grid for it";
+    if (!name.empty()) {
+        const auto& params = shader->info().params;
+        const auto param = std::find_if(params.begin(), params.end(),
+                                        [&](const ParamInfo& p) { return p.name == name; });
+        action = fmt::format("; set {} {} to bake it", name, to_string(param->default_value.x));
+    }
+    throw Error(
+        fmt::format("{}: shader '{}' is layered: its record is kept in estara-render's cache, "
+                    "there is nothing to bake{}",
+                    choice.where, choice.name, action));
+}
+
 std::vector<double> sizes_from_camera(const Scene& scene, const Options& options) {
     RayScene rays(scene);
     return automatic_voxel_sizes(scene, rays, find_camera(scene, options.camera),
@@ -98,7 +127,7 @@ std::vector<Job> plan(const Scene& scene, const Options& options,
     for (const int index : selected) {
         const Object& object = scene.objects[std::size_t(index)];
         jobs.push_back(
-            {&object, bind_choice(choose(object, options), object.mesh.has_uv()), {}, {}});
+            {&object, bind_solid(choose(object, options), object.mesh.has_uv()), {}, {}});
     }
     if (options.max_error) return jobs;
     if (!options.voxel_size) sizes = sizes_from_camera(scene, options);

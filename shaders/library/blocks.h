@@ -10,10 +10,10 @@ namespace estara {
 /// A wall of blocks in courses, with mortar, ragged edges and pits.
 ///
 /// The paper names it and gives no source; formula, parameters and colours are ours, after Gritz's
-/// family of brick shaders. On texture coordinates, or solid: a wall that is three blocks deep
-/// everywhere. With `bump` it perturbs the normal, by the gradient of
-///     height = bump * (rise from mortar to block) * (1 - depth of a pit)
-/// and is a layered shader.
+/// family of brick shaders. On texture coordinates, or solid: courses of blocks along y that the
+/// surface is cut out of. Edges are soft over a quarter of the mortar's thickness. With `bump` the
+/// normal follows the height bump * blockheight / 30 * (rise from mortar to block) * (1 - pit), and
+/// the shader is a layered one.
 struct Blocks {
     static constexpr std::string_view name = "blocks";
     static constexpr std::string_view summary =
@@ -41,8 +41,8 @@ struct Blocks {
                   "width of a block, and its depth (of u in variant 0)"},
             Param{"blockheight", &Blocks::blockheight, Part::bake, Unit::length, 1e-6f, 1e6f,
                   "height of a block (of v in variant 0)"},
-            Param{"mortarthickness", &Blocks::mortarthickness, Part::bake, Unit::length, 0.0f, 1e6f,
-                  "mortar between two blocks"},
+            Param{"mortarthickness", &Blocks::mortarthickness, Part::bake, Unit::length, 1e-6f,
+                  1e6f, "mortar between two blocks"},
             Param{"jagged", &Blocks::jagged, Part::bake, Unit::none, 0.0f, 1.0f,
                   "how far edges stray, in heights of a block"},
             Param{"blockvary", &Blocks::blockvary, Part::bake, Unit::none, 0.0f, 1.0f,
@@ -73,6 +73,7 @@ struct Blocks {
     Domain domain() const noexcept {
         return variant == solid && !layered() ? Domain::point : Domain::surface;
     }
+    bool needs_uv() const noexcept { return variant == on_uv; }
 
     Blocks resolved(bool has_uv) const noexcept {
         Blocks s = *this;
@@ -81,9 +82,10 @@ struct Blocks {
     }
 
     ESTARA_KERNEL Baked bake(const SurfacePoint& x) const noexcept {
-        // Texture coordinates are a plane through the middle of blocks that have no end.
-        const bool flat = variant != solid;
-        const glm::vec3 q = select(flat, {x.uv.x, x.uv.y, 0.0f}, x.P);
+        // Texture coordinates are a plane through blocks that have no end. A factor of 0 or 1, as
+        // choices that are the same for all points would be compiled into a loop for each.
+        const float depths = float(variant == solid), flat = 1.0f - depths;
+        const glm::vec3 q = depths * x.P + flat * glm::vec3(x.uv.x, x.uv.y, 0.0f);
 
         // Ragged edges: the wall is looked up a little beside the point.
         const float ripples = 3.0f / blockheight, reach = jagged * blockheight;
@@ -98,35 +100,34 @@ struct Blocks {
         const Joint across = joint(q.x + reach * wx.value + shift, pitch);
         const Joint along = joint(q.z + reach * wz.value + shift, pitch);
 
-        // The nearest joint counts.
+        // The nearest joint counts; distances in thicknesses of mortar, from its edge.
         const bool from_x = across.distance < course.distance;
-        const Joint wall = {0.0f, select(from_x, across.distance, course.distance),
-                            select(from_x, across.side, course.side)};
-        const bool from_z = !flat & (along.distance < wall.distance);
-        const float inside = select(from_z, along.distance, wall.distance) - 0.5f * mortarthickness;
+        const float nearest = select(from_x, across.distance, course.distance);
+        const float behind = along.distance + flat * 1e30f;
+        const bool from_z = behind < nearest;
+        const float inside = select(from_z, behind, nearest) / mortarthickness - 0.5f;
 
-        const float shade = 1.0f - blockvary * cellnoise(glm::vec3(across.cell, course.cell,
-                                                                   select(flat, 0.0f, along.cell)) +
-                                                         0.5f);
+        const float shade =
+            1.0f -
+            blockvary * cellnoise(glm::vec3(across.cell, course.cell, depths * along.cell) + 0.5f);
         const float pits = 8.0f / blockheight;
         const NoiseSlope grain = snoise_gradient(q * pits, 4u);
         const float pit = pitting * smoothstep(0.2f, 0.45f, grain.value);
         const glm::vec3 block = blockcolor * (shade * (1.0f - 0.5f * pit));
         const glm::vec3 mortar = mortarcolor * (0.925f + 0.075f * clamp(grain.value, -1.0f, 1.0f));
-        const glm::vec3 color =
-            mix(mortar, block, smoothstep(0.0f, 0.25f * mortarthickness, inside));
+        const glm::vec3 color = mix(mortar, block, smoothstep(0.0f, 0.25f, inside));
 
         // The relief's slope: of the rise along the way from the joint, and of the pit.
         const float depth = bump * blockheight / 30.0f;
-        const float side = select(from_z, along.side, wall.side);
+        const float side = select(from_z, along.side, select(from_x, across.side, course.side));
         const glm::vec3 axis(select(from_x & !from_z, 1.0f, 0.0f),
                              select(!from_x & !from_z, 1.0f, 0.0f), select(from_z, 1.0f, 0.0f));
         const glm::vec3 wave =
             select(from_z, wz.gradient, select(from_x, wx.gradient, wy.gradient));
         const glm::vec3 away = side * (axis + reach * ripples * wave);
-        const float rise = smoothstep(0.0f, mortarthickness, inside);
+        const float rise = smoothstep(0.0f, 1.0f, inside);
         const glm::vec3 of_rise =
-            smoothstep_slope(0.0f, mortarthickness, inside) * (1.0f - pit) * away;
+            smoothstep_slope(0.0f, 1.0f, inside) / mortarthickness * (1.0f - pit) * away;
         const glm::vec3 of_pit =
             rise * pitting * pits * smoothstep_slope(0.2f, 0.45f, grain.value) * grain.gradient;
         const glm::vec3 slope = depth * (of_rise - of_pit);
@@ -134,7 +135,7 @@ struct Blocks {
         // On texture coordinates the relief is stretched with them, so that its slope stays the
         // same. dPdv is not known: it is taken to be as long as dPdu and orthogonal to it.
         const glm::vec3 u = tangent_along(x.dPdu, x.N), v = glm::cross(x.N, u);
-        return {color, bumped(x.N, select(flat, slope.x * u + slope.y * v, slope))};
+        return {color, bumped(x.N, depths * slope + flat * (slope.x * u + slope.y * v))};
     }
 
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {

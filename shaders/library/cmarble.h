@@ -53,7 +53,8 @@ struct Cmarble {
         const float value = std::max(Cs.x, std::max(Cs.y, Cs.z));  // v of HSV
         // A colour of value v is v (1 - s (1 - hue)): so Cs / v keeps its hue when it is drawn
         // towards 1, and no conversion to HSV and back is needed. Black has no hue.
-        const glm::vec3 full = value > 0.0f ? Cs / value : glm::vec3(1.0f);
+        const glm::vec3 full =
+            select(value > 0.0f, Cs / (value > 0.0f ? value : 1.0f), glm::vec3(1.0f));
         const float faded = smoothstep(0.03f, 0.2f, T);
         const float light = 0.8f + 0.2f * smoothstep(0.35f, 0.6f, T);
         return {mix(full, glm::vec3(1.0f), faded) * mix(value, light, smoothstep(0.08f, 0.25f, T))};

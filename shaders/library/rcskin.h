@@ -11,8 +11,7 @@ namespace estara {
 /// Skin in four layers: pores, a base colour, blemishes that scatter light under the surface, and
 /// oil on top (Cortes 2002, "RCSkin"; its subsurface part after Pharr 2001, "Layer Media for
 /// Surface Shaders"). The paper's Listing 2, with the constants of the published shader: (H.N)^4
-/// and .2 where the paper prints (H.L)^4 and 2. Opacity is left out, as in all shaders of this
-/// library.
+/// and .2 where the paper prints (H.L)^4 and 2.
 ///
 /// The spline of blemishes runs through skincolor plus a grey; a Catmull-Rom spline commutes with
 /// that sum, so one number is interpolated instead of a colour.
@@ -83,6 +82,8 @@ struct RCSkin {
     }
 
     Domain domain() const noexcept { return Domain::surface; }
+    /// Without texture coordinates the oil's directions depend on the normal alone.
+    bool needs_uv() const noexcept { return false; }
     bool layered() const noexcept { return true; }
 
     /// Octaves of frequency 1, 2, 4 ... below maxfreq.
@@ -98,7 +99,7 @@ struct RCSkin {
         const float f = float(1 << k), amplitude = 1.0f / f;
         const float blemishes = snoise(x.P * (blemishfreq * f));
         const NoiseSlope pores = snoise_gradient(x.P * (poresfreq * f));
-        const glm::vec3 slope = pores.value < 0.0f ? -pores.gradient : pores.gradient;
+        const glm::vec3 slope = pores.gradient * select(pores.value < 0.0f, -1.0f, 1.0f);
         return {amplitude * std::fabs(blemishes),
                 {slope.x, slope.y, slope.z, amplitude * std::fabs(pores.value)}};
     }
@@ -126,7 +127,8 @@ struct RCSkin {
 
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         const glm::vec3 V = seen.V.vec();
-        const Fresnel eye = effective_fresnel(-V, seen.N);
+        const Fresnel eye = fresnel(-V, seen.N, 1.0f / eta);
+        const float Kr = reflected(eye), Kt = 1.0f - Kr;
         glm::vec3 blemishes(0.0f);
         for (std::size_t k = 0; k < seen.lights.size(); ++k) {
             const Light& light = seen.lights[k];
@@ -134,12 +136,13 @@ struct RCSkin {
                 light.Cl * clamp(glm::dot(light.L, seen.N), 0.0f, 1.0f);  // 0 from behind
             const float cosine = clamp(glm::dot(half_vector(light.L, V), seen.N), 0.0f, 1.0f);
             const float cosine2 = cosine * cosine;
-            const Fresnel in = effective_fresnel(-light.L, seen.N);
+            const Fresnel in = fresnel(-light.L, seen.N, 1.0f / eta);
+            const float Kt2 = 1.0f - reflected(in);
             const float scattered = single_scatter(eye.T, in.T, seen.N, 0.8f, 0.8f, thickness) +
                                     single_scatter(eye.T, in.T, seen.N, 0.3f, 0.5f, thickness) +
                                     single_scatter(eye.T, in.T, seen.N, 0.0f, 0.4f, thickness);
-            blemishes += arriving * (eye.Kr * (cosine2 * cosine2 + 0.2f) * sheenColor +
-                                     eye.Kt * in.Kt * scattered * b.color);
+            blemishes += arriving * (Kr * (cosine2 * cosine2 + 0.2f) * sheenColor +
+                                     Kt * Kt2 * scattered * b.color);
         }
         const glm::vec3 skin = mix(skincolor * seen.glow, blemishes, blemishopac);
         const glm::vec3 oil = ward(seen, b.Xdir, b.Ydir, xrough, yrough);
@@ -147,11 +150,9 @@ struct RCSkin {
     }
 
 private:
-    /// At the boundary of air and skin, with reflection at small angles taken away.
-    ESTARA_KERNEL Fresnel effective_fresnel(const glm::vec3& I, const glm::vec3& N) const noexcept {
-        const Fresnel f = fresnel(I, N, 1.0f / eta);
-        const float Kr = smoothstep(0.0f, 0.5f, f.Kr);
-        return {Kr, 1.0f - Kr, f.T};
+    /// Share of light that the skin reflects: Fresnel's, with that at small angles taken away.
+    ESTARA_KERNEL static float reflected(const Fresnel& f) noexcept {
+        return smoothstep(0.0f, 0.5f, f.Kr);
     }
 };
 

@@ -6,7 +6,7 @@
 namespace estara {
 
 /// Velvet (Westin's RenderMan shader): light comes back along the way it came, and the pile shines
-/// where it is seen from the side. Opacity is left out, as in all shaders of this library.
+/// where it is seen from the side.
 ///
 /// Its record is one colour and nearly all of its work depends on the view, so that keeping the
 /// record gains nothing.

@@ -82,6 +82,7 @@ public:
 
     const ShaderInfo& info() const noexcept override { return m_info; }
     Domain domain() const noexcept override { return domain_of(m_shader); }
+    bool needs_uv() const noexcept override { return estara::needs_uv(m_shader); }
     bool layered() const noexcept override { return estara::layered(m_shader); }
 
     std::vector<glm::vec3> values() const override {

@@ -10,23 +10,22 @@ namespace estara::detail {
 
 /// Writes a record to column i of planes, channel by channel. (Not by copying its bytes: that
 /// becomes one 16-byte move, which keeps the loop scalar.)
-/// @param normal  whether there are planes for a channel that is the normal
-template <class S, std::size_t channel = 0, int plane = 0>
-ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i,
-                         bool normal) noexcept {
+/// @tparam normal  whether there are planes for a channel that is the normal
+template <bool normal, class S, std::size_t channel = 0, int plane = 0>
+ESTARA_KERNEL void store(const typename S::Baked& baked, float* planes, int i) noexcept {
     constexpr auto channels = S::channels();
     if constexpr (channel < std::tuple_size_v<decltype(channels)>) {
-        if (std::get<channel>(channels).kind == ChannelKind::normal && !normal) return;
+        if constexpr (std::get<channel>(channels).kind == ChannelKind::normal && !normal) return;
         const auto& value = baked.*std::get<channel>(channels).member;
         float* const column = planes + plane * SurfaceBatch::capacity + i;
         if constexpr (std::is_same_v<decltype(value), const float&>) {
             column[0] = value;
-            store<S, channel + 1, plane + 1>(baked, planes, i, normal);
+            store<normal, S, channel + 1, plane + 1>(baked, planes, i);
         } else {
             column[0 * SurfaceBatch::capacity] = value.x;
             column[1 * SurfaceBatch::capacity] = value.y;
             column[2 * SurfaceBatch::capacity] = value.z;
-            store<S, channel + 1, plane + 3>(baked, planes, i, normal);
+            store<normal, S, channel + 1, plane + 3>(baked, planes, i);
         }
     }
 }
@@ -55,11 +54,11 @@ int octaves_of(const S& shader, float filter_width) noexcept {
 
 /// The scalar loops that the compiler makes wide. The shader and what is uniform over the batch are
 /// copied first: a store to planes could otherwise alias them.
-template <class S>
+/// @tparam normal  see store()
+template <bool normal, class S>
 ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, int last,
                              float* __restrict planes) noexcept {
     const float filter_width = in.filter_width;
-    const bool normal = perturbs_normal(shader);
     if constexpr (HasFiveSums<S>) {
         float sums[5][SurfaceBatch::capacity] = {};
         const int octaves = octaves_of(shader, filter_width);
@@ -75,8 +74,8 @@ ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, 
         }
         for (int i = first; i < last; ++i) {
             const glm::vec4 more(sums[1][i], sums[2][i], sums[3][i], sums[4][i]);
-            store<S>(shader.bake(point_of(in, i, filter_width, sums[0][i], more)), planes, i,
-                     normal);
+            store<normal, S>(shader.bake(point_of(in, i, filter_width, sums[0][i], more)), planes,
+                             i);
         }
     } else if constexpr (HasOctaves<S>) {
         float sums[SurfaceBatch::capacity] = {};
@@ -87,11 +86,11 @@ ESTARA_KERNEL void bake_loop(const S shader, const SurfaceBatch& in, int first, 
             }
         }
         for (int i = first; i < last; ++i) {
-            store<S>(shader.bake(point_of(in, i, filter_width, sums[i])), planes, i, normal);
+            store<normal, S>(shader.bake(point_of(in, i, filter_width, sums[i])), planes, i);
         }
     } else {
         for (int i = first; i < last; ++i) {
-            store<S>(shader.bake(point_of(in, i, filter_width, 0.0f)), planes, i, normal);
+            store<normal, S>(shader.bake(point_of(in, i, filter_width, 0.0f)), planes, i);
         }
     }
 }
@@ -145,7 +144,14 @@ ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatc
 template <class S>
 void Loops<S>::bake(const S& shader, const SurfaceBatch& in, int first, int last, float* planes,
                     InstructionSet limit) noexcept {
-    wide([=, &in]() ESTARA_LOOP { bake_loop(shader, in, first, last, planes); }, limit);
+    if constexpr (requires { shader.perturbs_normal(); }) {
+        if (!shader.perturbs_normal()) {
+            return wide([=, &in]()
+                            ESTARA_LOOP { bake_loop<false>(shader, in, first, last, planes); },
+                        limit);
+        }
+    }
+    wide([=, &in]() ESTARA_LOOP { bake_loop<true>(shader, in, first, last, planes); }, limit);
 }
 
 template <class S>

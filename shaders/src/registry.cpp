@@ -202,7 +202,7 @@ BindResult bind_shader(std::string_view name, std::span<const Setting> settings,
 
     const auto number = std::size_t(info - registry().infos.data());
     BoundShaderPtr shader = registry().binders[number](*info, values, has_uv, limit);
-    if (shader->domain() == Domain::surface && !has_uv) {
+    if (shader->needs_uv() && !has_uv) {
         result.problems.push_back(
             {"", "shader " + quoted(name) + " is set on texture coordinates, and the mesh has none",
              "add some, or use its solid variant"});

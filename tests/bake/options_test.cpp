@@ -9,6 +9,7 @@
 
 #include "estara/bake/run.h"
 #include "estara/scenes/error.h"
+#include "estara/shaders/registry.h"
 
 namespace estara::bake {
 namespace {
@@ -95,13 +96,11 @@ TEST(Options, AnswerMistakesInOneLine) {
     EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.txt"}),
               "a.txt: grids are written as .vdb; give the name that ending");
     EXPECT_EQ(failure({"wodo", "a.glb", "-o", "a.vdb"}),
-              "no shader 'wodo'; there are: wood, stone, cobblestone, greenmarble, plastic");
+              "no shader 'wodo'; there are: " + shader_names());
     EXPECT_EQ(failure({"woood", "a.glb", "-o", "a.vdb"}),
-              "no shader 'woood'; did you mean 'wood'? there are: wood, stone, cobblestone, "
-              "greenmarble, plastic");
+              "no shader 'woood'; did you mean 'wood'? there are: " + shader_names());
     EXPECT_EQ(failure({"--describe", "ston"}),
-              "no shader 'ston'; did you mean 'stone'? there are: wood, stone, cobblestone, "
-              "greenmarble, plastic");
+              "no shader 'ston'; did you mean 'stone'? there are: " + shader_names());
     EXPECT_EQ(
         failure({"wood", "a.glb", "-o", "a.vdb", "--voxel-size", "1", "--max-error", "1"}),
         "--voxel-size and --max-error exclude each other: one sets the voxel, the other finds it");

@@ -126,7 +126,7 @@ public:
         const auto with = [alone](InstructionSet set) {
             return Bake([alone, set](const SurfaceBatch& in, float* planes) {
                 wide([alone, &in, planes]()
-                         ESTARA_LOOP { detail::bake_loop(alone, in, 0, in.size, planes); },
+                         ESTARA_LOOP { detail::bake_loop<true>(alone, in, 0, in.size, planes); },
                      set);
             });
         };

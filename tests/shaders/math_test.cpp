@@ -210,5 +210,64 @@ TEST(Mix, EndsExactlyAndStaysBetweenOnes) {
     for (int i = 0; i < 100000; ++i) ASSERT_LE(mix(1.0f, 1.0f, random.unit()), 1.0f);
 }
 
+TEST(SmoothstepSlope, IsTheDerivativeOfSmoothstep) {
+    for (int i = 0; i <= 100; ++i) {
+        const double x = -0.5 + 0.03 * i + 1e-5, h = 1e-6;
+        const double slope =
+            (reference::smoothstep(0.2, 1.7, x + h) - reference::smoothstep(0.2, 1.7, x - h)) /
+            (2 * h);
+        EXPECT_NEAR(smoothstep_slope(0.2f, 1.7f, float(x)), slope, 2e-6) << x;
+    }
+    EXPECT_EQ(smoothstep_slope(1.0f, 1.0f, 1.0f), 0.0f);
+}
+
+TEST(ExpKernel, KeepsItsBound) {
+    double worst = 0;
+    for (int i = 0; i <= 175 * 8192; ++i) {
+        const float x = -87.0f + float(i) / 8192.0f;
+        const double exact = std::exp(double(x));
+        const double bound = 4e-7 + 1e-7 * std::abs(double(x));
+        worst = std::max(worst, std::abs(exp_kernel(x) - exact) / exact / bound);
+    }
+    EXPECT_LT(worst, 1.0) << "relative error as a share of the bound";
+    EXPECT_EQ(exp_kernel(0.0f), 1.0f);
+    EXPECT_EQ(exp_kernel(-1e30f), 0.0f);
+}
+
+TEST(SincosDegrees, KeepsItsBound) {
+    test::Random random(9);
+    for (int i = 0; i < 1000000; ++i) {
+        const float degrees = random.within(-1.0f, 1.0f) * (i % 2 == 0 ? 360.0f : 1e6f);
+        const double radians = double(degrees) * (3.14159265358979323846 / 180);
+        const double bound = 1e-7 + std::abs(double(degrees)) * 0x1p-30;
+        const SinCos both = sincos_degrees(degrees);
+        ASSERT_NEAR(both.sin, std::sin(radians), bound) << degrees;
+        ASSERT_NEAR(both.cos, std::cos(radians), bound) << degrees;
+    }
+}
+
+TEST(SincosDegrees, IsExactAtQuartersOfACircle) {
+    for (int quarter = -8; quarter <= 8; ++quarter) {
+        const SinCos both = sincos_degrees(90.0f * float(quarter));
+        const int turned = ((quarter % 4) + 4) % 4;
+        EXPECT_EQ(both.sin, turned == 1 ? 1.0f : turned == 3 ? -1.0f : 0.0f) << quarter;
+        EXPECT_EQ(both.cos, turned == 0 ? 1.0f : turned == 2 ? -1.0f : 0.0f) << quarter;
+    }
+}
+
+TEST(UnitVectorOr, IsOfUnitLengthOrTheOther) {
+    const glm::vec3 other(0.0f, 0.6f, 0.8f);
+    test::Random random(10);
+    for (int i = 0; i < 10000; ++i) {
+        const glm::vec3 d = random.direction() * std::exp2(random.within(-49.0f, 49.0f));
+        const glm::vec3 unit = unit_vector_or(d, other);
+        ASSERT_NEAR(glm::length(unit), 1.0f, 1e-6f);
+        ASSERT_GT(glm::dot(unit, d) / glm::length(d), 0.999999f);
+    }
+    EXPECT_EQ(unit_vector_or(glm::vec3(0.0f), other), other);
+    EXPECT_EQ(unit_vector_or(glm::vec3(1e30f), other), other);
+    EXPECT_EQ(unit_vector_or(glm::vec3(std::nanf("")), other), other);
+}
+
 }  // namespace
 }  // namespace estara

@@ -299,5 +299,52 @@ TEST(Turbulence, TermsBeyondTheLastAreNothing) {
     }
 }
 
+TEST(NoiseGradient, ComesWithTheValueOfSnoiseToTheBit) {
+    test::Random random(20);
+    for (int i = 0; i < 50000; ++i) {
+        const glm::vec3 p = random.point(i % 2 == 0 ? 3.0f : 3000.0f);
+        const std::uint32_t seed = i % 4;
+        ASSERT_EQ(snoise_gradient(p, seed).value, snoise(p, seed));
+    }
+}
+
+// Rounding of the offsets as for the value; the noise curves by 60 at most.
+TEST(NoiseGradient, IsTheChangeOfTheReference) {
+    test::Random random(21);
+    for (int i = 0; i < 20000; ++i) {
+        const glm::vec3 p = random.point(i % 2 == 0 ? 3.0f : 3000.0f);
+        const std::uint32_t seed = i % 4;
+        const glm::dvec3 exact = reference::change(
+            [&](const glm::dvec3& q) { return reference::snoise(q, 3, seed); }, p, 1e-6);
+        const glm::vec3 slope = snoise_gradient(p, seed).gradient;
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(slope[c], exact[c], 2e-5) << i;
+    }
+}
+
+TEST(NoiseGradient, AtALatticePointIsThatOfItsCorner) {
+    test::Random random(22);
+    for (int i = 0; i < 1000; ++i) {
+        const NoiseSlope at = snoise_gradient(glm::floor(random.point(100.0f)));
+        EXPECT_EQ(at.value, 0.0f);
+        int ones = 0;
+        for (int c = 0; c < 3; ++c) {
+            if (at.gradient[c] == 0.0f) continue;
+            EXPECT_EQ(std::fabs(at.gradient[c]), 0.936f);
+            ++ones;
+        }
+        EXPECT_EQ(ones, 2);
+    }
+}
+
+TEST(NoiseGradient, IsFiniteAtHugeCoordinates) {
+    test::Random random(23);
+    for (const float scale : {1e6f, 1e9f, 1e20f, 1e38f}) {
+        for (int i = 0; i < 1000; ++i) {
+            const NoiseSlope at = snoise_gradient(random.point(1.0f) * scale);
+            ASSERT_LT(glm::length(at.gradient), 8.0f);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace estara

@@ -31,16 +31,14 @@ std::vector<std::string> problems(const char* shader, const std::vector<Setting>
 }
 
 TEST(Bind, SuggestsTheShaderThatWasMeant) {
-    EXPECT_THAT(
-        problems("woood", {}),
-        ElementsAre("woood | no shader 'woood' | did you mean 'wood'? there are: wood, stone, "
-                    "cobblestone, greenmarble, plastic"));
-    EXPECT_THAT(problems("velvet", {}),
-                ElementsAre("velvet | no shader 'velvet' | there are: wood, stone, cobblestone, "
-                            "greenmarble, plastic"));
-    EXPECT_THAT(
-        problems("", {}),
-        ElementsAre(" | no shader '' | there are: wood, stone, cobblestone, greenmarble, plastic"));
+    const std::string all =
+        "wood, stone, cobblestone, greenmarble, spatter, carpet, cmarble, colormarble, blocks, "
+        "velvet, RCSkin, plastic";
+    EXPECT_THAT(problems("woood", {}),
+                ElementsAre("woood | no shader 'woood' | did you mean 'wood'? there are: " + all));
+    EXPECT_THAT(problems("linen", {}),
+                ElementsAre("linen | no shader 'linen' | there are: " + all));
+    EXPECT_THAT(problems("", {}), ElementsAre(" | no shader '' | there are: " + all));
 }
 
 TEST(Bind, SuggestsTheParameterThatWasMeant) {
@@ -114,6 +112,17 @@ TEST(Bind, RefusesTextureCoordinatesThatTheMeshDoesNotHave) {
         ElementsAre(" | shader 'cobblestone' is set on texture coordinates, and the mesh has none "
                     "| add some, or use its solid variant"));
     EXPECT_THAT(problems("cobblestone", {{"variant", {0}}}, true), ElementsAre());
+    EXPECT_THAT(
+        problems("blocks", {{"variant", {0}}}, false),
+        ElementsAre(" | shader 'blocks' is set on texture coordinates, and the mesh has none "
+                    "| add some, or use its solid variant"));
+}
+
+TEST(Bind, TakesAMeshWithoutTextureCoordinatesWhereTheSurfaceAloneIsNeeded) {
+    EXPECT_THAT(problems("RCSkin", {}, false), ElementsAre());
+    EXPECT_THAT(problems("blocks", {{"variant", {1}}, {"bump", {1}}}, false), ElementsAre());
+    EXPECT_EQ(bind_shader("RCSkin", {}, false).shader->domain(), Domain::surface);
+    EXPECT_FALSE(bind_shader("RCSkin", {}, false).shader->needs_uv());
 }
 
 TEST(Bind, TakesAGreyForAColour) {
@@ -148,6 +157,30 @@ TEST(Cobblestone, IsSetOnTextureCoordinatesWhereThereAreSome) {
     EXPECT_EQ(shader_digest(*bound(-1, false)), shader_digest(*bound(1, true)));
     EXPECT_EQ(shader_digest(*bound(-1, true)), shader_digest(*bound(0, true)));
     EXPECT_NE(shader_digest(*bound(0, true)), shader_digest(*bound(1, true)));
+}
+
+TEST(Blocks, IsLayeredAndHasANormalWithBumpAlone) {
+    const auto bound = [](float bump, bool has_uv) {
+        return bind_shader("blocks", std::vector<Setting>{{"bump", {bump}}}, has_uv).shader;
+    };
+    for (const bool has_uv : {true, false}) {
+        EXPECT_FALSE(bound(0, has_uv)->layered());
+        EXPECT_EQ(bound(0, has_uv)->domain(), has_uv ? Domain::surface : Domain::point);
+        EXPECT_EQ(bound(0, has_uv)->info().channels.size(), 1u);
+        EXPECT_EQ(bound(0, has_uv)->info().baked_floats, 3);
+        EXPECT_TRUE(bound(1, has_uv)->layered());
+        EXPECT_EQ(bound(1, has_uv)->domain(), Domain::surface);
+        EXPECT_EQ(bound(1, has_uv)->info().channels.back().kind, ChannelKind::normal);
+        EXPECT_EQ(bound(1, has_uv)->info().baked_floats, 6);
+    }
+}
+
+TEST(Registry, KnowsTheLayeredShaders) {
+    std::vector<std::string_view> layered;
+    for (const ShaderInfo& info : all_shaders()) {
+        if (bind_shader(info.name, {}, true).shader->layered()) layered.push_back(info.name);
+    }
+    EXPECT_THAT(layered, ElementsAre("velvet", "RCSkin"));
 }
 
 TEST(Registry, KnowsEveryShaderByName) {
@@ -185,8 +218,8 @@ TEST(Registry, DeclaresParametersAndChannelsCompletely) {
     }
 }
 
-// The shaders' published parameters; plastic is RSL's, and stone's Cs, the surface colour there,
-// our choice.
+// The shaders' published parameters; plastic is RSL's. Ours are Cs, the surface colour there, and
+// all of cobblestone's, colormarble's and blocks'.
 TEST(Registry, HasThePublishedDefaults) {
     const std::map<std::string, std::vector<std::string>> published{
         {"wood",
@@ -201,6 +234,27 @@ TEST(Registry, HasThePublishedDefaults) {
         {"greenmarble",
          {"Ka=0.1", "Kd=0.6", "Ks=0.4", "roughness=0.01", "darkcolor=0.01,0.12,0.004",
           "lightcolor=0.06,0.18,0.02", "veincolor=0.47,0.57,0.03", "veinfreq=1", "sharpness=25"}},
+        {"spatter",
+         {"Ka=1", "Kd=0.5", "Ks=0.7", "roughness=0.2", "specksize=0.01", "sizes=5",
+          "basecolor=0.1,0.1,0.5", "spattercolor=1,1,1"}},
+        {"carpet", {"Kd=0.6", "Ka=0.1", "scuff=1", "nap=1", "Cs=0.42,0.12,0.1"}},
+        {"cmarble",
+         {"Ka=0.1", "Kd=0.6", "Ks=0.4", "roughness=0.1", "veining=1", "Cs=0.5,0.26,0.16"}},
+        {"colormarble",
+         {"Ks=0.4", "Kd=0.6", "Ka=0.1", "roughness=0.1", "txtscale=1", "pale=0.9,0.86,0.78",
+          "medium=0.8,0.66,0.52", "middark=0.55,0.34,0.26", "dark=0.25,0.14,0.12"}},
+        {"blocks",
+         {"variant=0", "Ka=0.7", "Kd=0.7", "blockwidth=0.3", "blockheight=0.15",
+          "mortarthickness=0.01", "jagged=0.04", "blockvary=0.25", "pitting=0.5",
+          "blockcolor=0.72,0.7,0.64", "mortarcolor=0.45,0.43,0.4", "bump=0"}},
+        {"velvet",
+         {"Ka=0.05", "Kd=0.1", "backscatter=0.1", "edginess=10", "sheen=0.25,0.25,0.25",
+          "roughness=0.1", "Cs=0.4,0.05,0.12"}},
+        {"RCSkin",
+         {"Kd=0.1", "skincolor=0.7,0.56,0.52", "sheenColor=1,1,1", "blemishfreq=12",
+          "blemishthresh=4", "blemishopac=1", "eta=1.01", "thickness=1", "angle=180", "oily=1.5",
+          "xrough=0.3", "yrough=0.5", "poresfreq=60", "poresthresh=3", "poresdepth=-0.001",
+          "maxfreq=8", "brightness=1"}},
         {"plastic",
          {"Ka=1", "Kd=0.5", "Ks=0.5", "roughness=0.1", "specularcolor=1,1,1", "Cs=0.5,0.5,0.5"}},
     };

@@ -21,6 +21,7 @@ void expect_superposition() {
         x.P = {random.within(-1.0f, 1.0f), random.within(-1.0f, 1.0f), random.within(-1.0f, 1.0f)};
         x.N = random.direction();
         x.filter_width = 0.01f;
+        x.dPdu = random.direction();
         const auto baked = shader.bake(x);
         const glm::vec3 N = random.direction(), E(random.unit(), random.unit(), random.unit());
         const glm::vec3 A(random.unit(), random.unit(), random.unit()), none(0.0f);
@@ -47,6 +48,51 @@ void expect_superposition_of(std::type_identity<std::tuple<S...>>) {
 
 TEST(View, IsTheSumOfWhatEveryLightMakes) {
     expect_superposition_of(std::type_identity<AllShaders>());
+}
+
+/// The last of S's channels.
+template <class S>
+constexpr auto last_channel() {
+    constexpr auto channels = S::channels();
+    return std::get<std::tuple_size_v<decltype(channels)> - 1>(channels);
+}
+
+template <class S>
+void expect_no_look_at_the_normal(int& normals) {
+    if constexpr (requires(typename S::Baked b) {
+                      b.*last_channel<S>().member = glm::vec3(0.0f);
+                  }) {
+        if (last_channel<S>().kind != ChannelKind::normal) return;
+        ++normals;
+        const S shader;
+        test::Random random(2);
+        for (int i = 0; i < 100; ++i) {
+            SurfacePoint x{};
+            x.P = random.point(1.0f);
+            x.N = random.direction();
+            x.dPdu = random.direction();
+            x.filter_width = 0.01f;
+            const auto baked = shader.bake(x);
+            auto other = baked;
+            other.*last_channel<S>().member = random.direction();
+            const Light light{random.direction(), glm::vec3(1.0f)};
+            const Seen seen{random.direction(),
+                            Camera::direction(random.direction()),
+                            glm::vec3(0.5f),
+                            glm::vec3(0.2f),
+                            {&light, 1}};
+            ASSERT_EQ(shader.view(baked, seen), shader.view(other, seen)) << S::name;
+        }
+    }
+}
+
+// The renderer hands over the normal in Seen, in world space and on the eye's side.
+TEST(View, DoesNotLookAtTheNormalOfItsRecord) {
+    int normals = 0;
+    [&]<class... S>(std::type_identity<std::tuple<S...>>) {
+        (expect_no_look_at_the_normal<S>(normals), ...);
+    }(std::type_identity<AllShaders>{});
+    EXPECT_EQ(normals, 2);
 }
 
 }  // namespace

@@ -16,20 +16,20 @@ namespace estara {
 /// @param N         unit length
 /// @param gradient  change of the height with the point, same space as N
 ESTARA_KERNEL glm::vec3 bumped(const glm::vec3& N, const glm::vec3& gradient) noexcept {
-    return unit_or(N - (gradient - glm::dot(gradient, N) * N), N);
+    return unit_vector_or(N - (gradient - glm::dot(gradient, N) * N), N);
 }
 
 /// Unit vector in the plane normal to N in which u grows; where dPdu does not say (there are no
 /// texture coordinates, or it is parallel to N) a tangent that depends on N alone.
 /// @param N  unit length
 ESTARA_KERNEL glm::vec3 tangent_along(const glm::vec3& dPdu, const glm::vec3& N) noexcept {
-    const glm::vec3 u = unit_or(dPdu, glm::vec3(0.0f));
+    const glm::vec3 u = unit_vector_or(dPdu, glm::vec3(0.0f));
     const glm::vec3 along = u - glm::dot(u, N) * N;
     // Below this length the difference is rounding.
     const bool usable = glm::dot(along, along) > 1e-6f;
     const bool upright = std::fabs(N.z) > 0.7f;
     const glm::vec3 any = glm::cross(select(upright, {1, 0, 0}, {0, 0, 1}), N);
-    return unit_or(select(usable, along, any), {1, 0, 0});
+    return unit_vector_or(select(usable, along, any), {1, 0, 0});
 }
 
 }  // namespace estara

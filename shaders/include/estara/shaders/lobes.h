@@ -14,9 +14,6 @@ namespace estara {
 /// constant open (1, 8 and 10 are in use); 8 is what PRMan-like renderers take.
 inline constexpr float specular_exponent = 8.0f;
 
-/// exp(x). Relative error below 4e-7 + 1e-7 |x| (tested).
-ESTARA_KERNEL float exp_kernel(float x) noexcept { return exp2_kernel(1.44269504f * x); }
-
 /// The unit vector half way between two unit vectors; 0 where they are opposite and there is none.
 ESTARA_KERNEL glm::vec3 half_vector(const glm::vec3& a, const glm::vec3& b) noexcept {
     const glm::vec3 h = a + b;
@@ -78,7 +75,7 @@ ESTARA_KERNEL Fresnel fresnel(const glm::vec3& I, const glm::vec3& N, float eta)
     const float Kr = total ? 1.0f : clamp(0.5f * (rs * rs + rp * rp), 0.0f, 1.0f);
     // eta G is the cosine behind the boundary: eta^2 G^2 = 1 - eta^2 (1 - c^2).
     const glm::vec3 T = eta * I + (eta * c - eta * G) * N;
-    return {Kr, 1.0f - Kr, total ? glm::vec3(0.0f) : T};
+    return {Kr, 1.0f - Kr, select(total, glm::vec3(0.0f), T)};
 }
 
 /// Phase function of Henyey & Greenstein 1941, "Diffuse Radiation in the Galaxy", without the

@@ -94,6 +94,8 @@ public:
     /// Of the shader with these parameters: without its normal channel if they do not perturb it.
     virtual const ShaderInfo& info() const noexcept = 0;
     virtual Domain domain() const noexcept = 0;
+    /// Whether the mesh must have texture coordinates.
+    virtual bool needs_uv() const noexcept = 0;
     /// Whether it is more than a colour of the surface point with a highlight: then it has no place
     /// in a grid, and its record is kept in the renderer's cache.
     virtual bool layered() const noexcept = 0;

@@ -8,6 +8,8 @@
 // comes along: this is what makes the baked half reusable in every frame. A shader may also have
 //
 //     Domain  domain() const noexcept;              what decides its colour; default: Domain::point
+//     bool    needs_uv() const noexcept;            whether without texture coordinates it is an
+//                                                   error; default: if domain() is surface
 //     float   octave(const SurfacePoint&, int k) const noexcept;  term k of SurfacePoint's
 //                                                   octave_sum; an OctaveTerm is five of them
 //     float   octave_frequency() const noexcept;    lattice cells per length in term 0, which with
@@ -141,6 +143,15 @@ Domain domain_of(const S& shader) noexcept {
         return shader.domain();
     } else {
         return Domain::point;
+    }
+}
+
+template <class S>
+bool needs_uv(const S& shader) noexcept {
+    if constexpr (requires { shader.needs_uv(); }) {
+        return shader.needs_uv();
+    } else {
+        return domain_of(shader) == Domain::surface;
     }
 }
 
