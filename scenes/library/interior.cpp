@@ -183,9 +183,9 @@ const Material court_stone{"courtyard cobbles",
                             {"Ka", {0.6}},
                             {"Ks", {0.05}}},
                            dvec3(0.6, 0.55, 0.48)};
-const Material red_velvet = velvet_in("red velvet", {0.42, 0.035, 0.045});
-const Material blue_velvet = velvet_in("blue velvet", {0.05, 0.13, 0.30});
-const Material gold_velvet = velvet_in("gold velvet", {0.55, 0.34, 0.08});
+const Material red_velvet = velvet_in("red velvet", {0.32, 0.022, 0.03});
+const Material blue_velvet = velvet_in("blue velvet", {0.035, 0.09, 0.23});
+const Material gold_velvet = velvet_in("gold velvet", {0.48, 0.28, 0.06});
 const Material wine_velvet = velvet_in("wine velvet", {0.26, 0.02, 0.05});
 const Material rug_field = carpet_in("rug field", {0.50, 0.10, 0.07}, 1.3, 0.8);
 const Material rug_border = carpet_in("rug border", {0.72, 0.60, 0.40}, 1.3, 0.8);
@@ -383,8 +383,8 @@ void add_courtyard(Room& room) {
     }
     // The sky gives its own light: ambient, many times over.
     const auto sky = [](double u, double v) {
-        const double angle = (-80 + 160 * u) * double(degree);
-        return dvec3(3.0 + 22.0 * std::cos(angle), -1.0 + 13.0 * v, -2.0 + 22.0 * std::sin(angle));
+        const double angle = (80 - 160 * u) * double(degree);
+        return dvec3(3.0 + 22.0 * std::cos(angle), -1.0 + 9.5 * v, -2.0 + 22.0 * std::sin(angle));
     };
     room.put("sky", plastic_in("sky", {0.50, 0.70, 0.98}, 2.2),
              tessellate(sky, {60, 8}, {.u = false, .v = false}), vec3(0));
@@ -640,6 +640,7 @@ Mesh lamp_shade(double below, double above, double tall) {
     return lathe(profile, {96, 40});
 }
 
+const Material linen = plastic_in("linen", {0.72, 0.62, 0.46});
 const Material lit_shade = plastic_in("lit shade", {0.95, 0.68, 0.36}, 2.0);
 
 void add_lamps(Room& room, const vec3& floor_lamp, const vec3& table_lamp) {
@@ -653,8 +654,21 @@ void add_lamps(Room& room, const vec3& floor_lamp, const vec3& table_lamp) {
                        {0.03, 0.03},   {0.05, 0.08},  {0.07, 0.14},   {0.045, 0.2},
                        {0.014, 0.235}, {0.012, 0.26}, {0.010, 0.3},   {0, 0.3}};
     room.put("table lamp", cream_enamel, lathe(foot, {80, 100}), table_lamp);
-    room.put("table lamp shade", lit_shade, lamp_shade(0.16, 0.09, 0.19),
+    room.put("table lamp shade", linen, lamp_shade(0.16, 0.09, 0.19),
              table_lamp + vec3(0, 0.28f, 0));
+}
+
+/// A dish above a bulb; @param bulb  its centre. The lamp itself is just below it.
+void add_pendant(Room& room, const vec3& bulb) {
+    const dvec2 dish[]{{0.010, 0.12}, {0.03, 0.118}, {0.05, 0.10},    {0.14, 0.065},
+                       {0.22, 0.01},  {0.235, 0.0},  {0.238, -0.003}, {0.234, -0.004},
+                       {0.22, 0.005}, {0.14, 0.058}, {0.05, 0.092},   {0.03, 0.105},
+                       {0.010, 0.108}};
+    room.put("pendant dish", brass, lathe(dish, {120, 70}), bulb);
+    const dvec2 rod[]{{0, 0.02},    {0.016, 0.02}, {0.018, 0.03}, {0.018, 0.12}, {0.006, 0.15},
+                      {0.005, 0.2}, {0.005, 0.6},  {0.03, 0.74},  {0.05, 0.775}, {0, 0.779}};
+    room.put("pendant rod", brass, lathe(rod, {40, 60}), bulb);
+    room.put("pendant globe", lit_shade, sphere(0.032, {48, 32}), bulb);
 }
 
 void add_side_table(Room& room, const vec3& place) {
@@ -773,23 +787,24 @@ void add_rug(Room& room, const vec3& place) {
              place + vec3(0, 0.011f, 0));
 }
 
-void add_lights(GlbBuilder& out, const vec3& floor_lamp, const vec3& table_lamp) {
+void add_lights(GlbBuilder& out, const vec3& floor_lamp, const vec3& pendant) {
     const dvec3 bulb(1.0, 0.70, 0.40);
     out.add_lamp({"sun", "directional", dvec3(1.0, 0.90, 0.74), lux_for(3.2)},
                  {vec3(0), looking_along({-0.80f, -0.56f, -0.22f})});
     out.add_lamp({"floor bulb", "point", bulb, candela_for(1.0, 2.0)},
                  {floor_lamp + vec3(0, 1.56f, 0)});
-    out.add_lamp({"table bulb", "point", bulb, candela_for(0.42, 2.0)},
-                 {table_lamp + vec3(0, 0.38f, 0)});
+    out.add_lamp({"pendant bulb", "point", dvec3(1.0, 0.80, 0.58), candela_for(0.55, 2.5)},
+                 {pendant - vec3(0, 0.035f, 0)});
     out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.75, 1.5)},
                  {vec3(fire_x, 0.70f, breast_front - 0.06f)});
-    out.set_ambient(dvec3(0.70, 0.71, 0.75));
+    out.set_ambient(dvec3(0.58, 0.60, 0.65));
 }
 
 void build(GlbBuilder& out) {
     Room room(out);
     const vec3 floor_lamp(-2.5f, 0, -1.75f), side_table(2.35f, 0, -2.75f),
         table_lamp = side_table + vec3(0.02f, 0.617f, -0.02f);
+    const vec3 pendant(-0.35f, 2.02f, -1.45f);
     add_floor(room);
     add_walls(room);
     add_window(room);
@@ -807,7 +822,8 @@ void build(GlbBuilder& out) {
     add_door(room, 2.05f);
     add_statue(room, {-2.62f, 0, -2.75f});
     add_floor_vase(room, {1.45f, 0, -3.2f});
-    add_lights(out, floor_lamp, table_lamp);
+    add_lights(out, floor_lamp, pendant);
+    add_pendant(room, pendant);
 
     const Shot shots[]{{{-1.75f, 1.62f, 2.60f}, {0.85f, 1.15f, -1.9f}},
                        {{-1.3f, 1.60f, 2.40f}, {0.70f, 1.10f, -2.0f}},
