@@ -170,10 +170,13 @@ dvec3 left_side(const dvec3& p) { return {std::sqrt(p.x * p.x + 0.0009), p.y, p.
 double head(const dvec3& p) {
     const dvec3 side = left_side(p);
     double d = skull(p, side);
-    d = with_eyes(d, p, side);
-    d = with_nose(d, p, side);
-    d = with_mouth(d, p, side);
-    d = with_neck(d, p, side);
+    // What is further from the surface than any blending reaches need not be asked.
+    if (p.z > 0.1) {
+        d = with_eyes(d, p, side);
+        d = with_nose(d, p, side);
+        d = with_mouth(d, p, side);
+    }
+    if (p.y < 0.4) d = with_neck(d, p, side);
     return with_ear(d, side);
 }
 
@@ -372,7 +375,7 @@ void build(GlbBuilder& out, bool second) {
     const DBox head_box{{-1.6, -2.5, -1.5}, {1.6, 1.4, 1.4}};
     add_piece(out,
               {"head", skin(second),
-               with_cylindrical_uv(surface_of(head, head_box, 0.0115), {0, 0, -0.1}), vec3(0)});
+               with_cylindrical_uv(surface_of(head, head_box, 0.0125), {0, 0, -0.1}), vec3(0)});
     add_piece(out,
               {"hair", dark_marble,
                with_cylindrical_uv(surface_of(hair, head_box, 0.0125), {0, 0, -0.1}), vec3(0)});
@@ -382,7 +385,7 @@ void build(GlbBuilder& out, bool second) {
               {"lips", lip_skin(second),
                with_cylindrical_uv(surface_of(lips, mouth_box, 0.008), {0, 0, -0.1}), vec3(0)});
     add_piece(
-        out, {"brows", brown, with_cylindrical_uv(surface_of(brows, brow_box, 0.006), {0, 0, -0.1}),
+        out, {"brows", brown, with_cylindrical_uv(surface_of(brows, brow_box, 0.007), {0, 0, -0.1}),
               vec3(0)});
     const DBox garment_box{{-2.6, -3.7, -1.7}, {2.6, -1.4, 1.2}};
     add_piece(out,
@@ -400,7 +403,7 @@ void build(GlbBuilder& out, bool second) {
     out.set_ambient(dvec3(0.35, 0.36, 0.40));
 
     std::vector<Shot> shots;
-    for (const double angle : {-27.0, -16.0, -5.0, 6.0, 17.0, 28.0}) {
+    for (const double angle : {-25.0, -15.0, -5.0, 5.0, 15.0, 25.0}) {
         const double distance = 9.5 - 0.9 * std::cos(2.2 * angle * degree);
         const dvec3 eye(distance * std::sin(angle * degree), 0.35 + 0.006 * angle,
                         distance * std::cos(angle * degree));

@@ -97,11 +97,9 @@ Mesh surface_of(const Solid& solid, const DBox& inside, double edge) {
     mesh.N.resize(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         glm::dvec3 p = edge * glm::dvec3(points[i].x(), points[i].y(), points[i].z());
-        // The mesher's points are averages: two steps along the slope put them on the surface.
-        for (int round = 0; round < 2; ++round) {
-            const double most = 0.25 * edge;
-            p -= std::clamp(solid(p), -most, most) * slope(solid, p, 0.2 * edge);
-        }
+        // The mesher's points are averages: a step along the slope puts them on the surface.
+        const double most = 0.25 * edge;
+        p -= std::clamp(solid(p), -most, most) * slope(solid, p, 0.2 * edge);
         mesh.P[i] = p;
         mesh.N[i] = slope(solid, p, 0.5 * edge);
     });

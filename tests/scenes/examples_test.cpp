@@ -224,12 +224,16 @@ TEST(Tumble, KeepsItsObjectInViewAndItsImageFull) {
     }
 }
 
-/// The centre of each tenth triangle.
+/// Points on a mesh: many on each of few triangles, or one on each tenth of many.
 std::vector<MeshPoint> some_points(const Mesh& mesh) {
     std::vector<MeshPoint> points;
-    const std::size_t step = mesh.triangles.size() < 2000 ? 1 : 10;
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += step)
-        points.push_back(mesh_point(mesh, std::uint32_t(t), 1.0f / 3.0f, 1.0f / 3.0f));
+    const bool few = mesh.triangles.size() < 2000;
+    const int n = few ? 6 : 1;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += few ? 1 : 10)
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; i + j < n; ++j)
+                points.push_back(mesh_point(mesh, std::uint32_t(t), (float(i) + 0.33f) / float(n),
+                                            (float(j) + 0.33f) / float(n)));
     return points;
 }
 
