@@ -6,7 +6,8 @@
 
 #include "glb.h"
 
-#define ESTARA_EXAMPLES(scene) scene(still_life) scene(tumble)
+#define ESTARA_EXAMPLES(scene) \
+    scene(still_life) scene(tumble) scene(simple) scene(face) scene(face_b) scene(interior)
 
 namespace estara::examples {
 

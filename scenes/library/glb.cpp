@@ -192,6 +192,7 @@ int GlbBuilder::add_lamp(const Lamp& lamp, const Placement& placement) {
     light.intensity = lamp.intensity;
     light.spot.innerConeAngle = lamp.inner_cone;
     light.spot.outerConeAngle = lamp.outer_cone;
+    if (!lamp.shadow) light.extras = Value(Value::Object{{"shadow", Value(false)}});
     model.lights.push_back(light);
     const int node = add_node(lamp.name, placement);
     model.nodes[node].extensions["KHR_lights_punctual"] =

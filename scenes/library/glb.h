@@ -36,6 +36,7 @@ struct Lamp {
     glm::dvec3 color{1.0};
     double intensity = 1.0;                       ///< lux (directional) or candela
     double inner_cone = 0.0, outer_cone = 0.785;  ///< radians from the axis, spots only
+    bool shadow = true;
 };
 
 /// The light that gives irradiance / pi = `Cl` on a surface that faces it.

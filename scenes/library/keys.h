@@ -6,13 +6,14 @@
 
 namespace estara::examples {
 
-inline constexpr int frames = 48;
+inline constexpr int frames = 48;        ///< of a loop
+inline constexpr int path_frames = 100;  ///< of a path, which has two ends
 inline constexpr double fps = 24.0;
 
-/// When frames 1 to `frames` are shown, seconds.
-inline std::vector<float> frame_times() {
+/// When frames 1 to `count` are shown, seconds.
+inline std::vector<float> frame_times(int count = frames) {
     std::vector<float> times;
-    for (int f = 1; f <= frames; ++f) times.push_back(float(f / fps));
+    for (int f = 1; f <= count; ++f) times.push_back(float(f / fps));
     return times;
 }
 

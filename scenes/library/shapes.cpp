@@ -238,4 +238,51 @@ Mesh scaled(Mesh mesh, float factor) {
     return mesh;
 }
 
+Mesh planar_tube(const std::function<glm::dvec2(double)>& curve,
+                 const std::function<double(double)>& radius, Cells cells) {
+    const auto at = [&](double u, double v) {
+        const glm::dvec2 ahead = glm::normalize(curve(v + step) - curve(v - step));
+        const glm::dvec3 n(ahead.y, -ahead.x, 0.0);
+        const double around = 2.0 * pi * u;
+        return glm::dvec3(curve(v), 0.0) +
+               radius(v) * (std::cos(around) * n + glm::dvec3(0.0, 0.0, std::sin(around)));
+    };
+    return tessellate(at, cells, {.u = true, .v = false});
+}
+
+Mesh moved(Mesh mesh, const glm::vec3& by, const glm::quat& rotation) {
+    for (glm::vec3& p : mesh.P) p = rotation * p + by;
+    for (glm::vec3& n : mesh.N) n = glm::normalize(rotation * n);
+    return mesh;
+}
+
+Mesh joined(std::span<const Mesh> parts) {
+    Mesh all;
+    for (const Mesh& part : parts) {
+        const auto first = glm::uint(all.P.size());
+        all.P.insert(all.P.end(), part.P.begin(), part.P.end());
+        all.N.insert(all.N.end(), part.N.begin(), part.N.end());
+        all.uv.insert(all.uv.end(), part.uv.begin(), part.uv.end());
+        for (const glm::uvec3& t : part.triangles) all.triangles.push_back(t + first);
+    }
+    return all;
+}
+
+Mesh with_metric_uv(Mesh mesh) {
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::vec3 n = glm::cross(mesh.P[t.y] - mesh.P[t.x], mesh.P[t.z] - mesh.P[t.x]);
+        const glm::vec3 size = glm::abs(n);
+        for (int c = 0; c < 3; ++c) {
+            const glm::vec3& p = mesh.P[t[c]];
+            if (size.y >= size.x && size.y >= size.z)
+                mesh.uv[t[c]] = {p.x, n.y > 0.0f ? -p.z : p.z};
+            else if (size.x >= size.z)
+                mesh.uv[t[c]] = {n.x > 0.0f ? -p.z : p.z, p.y};
+            else
+                mesh.uv[t[c]] = {n.z > 0.0f ? p.x : -p.x, p.y};
+        }
+    }
+    return mesh;
+}
+
 }  // namespace estara::examples

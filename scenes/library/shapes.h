@@ -1,12 +1,14 @@
 // Smooth shapes of any fineness, from formulas: what the example scenes are built of.
 //
-// Every mesh has unit normals that point outwards, texture coordinates in [0, 1]^2, and no triangle
+// Every mesh has unit normals that point outwards, texture coordinates (in [0, 1]^2 unless said
+// otherwise), and no triangle
 // with two corners in one place. Where a surface closes on itself, the vertices on either side of
 // the uv seam have the same position bit for bit, so closed shapes are watertight.
 #pragma once
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <span>
 
 #include "estara/scenes/mesh.h"
@@ -60,7 +62,25 @@ Mesh rounded_box(const glm::dvec3& half_size, double radius, int flat, int bend)
 /// @param wavelength  distance between them
 Mesh rolling_ground(double size, double height, double wavelength, Cells cells);
 
+/// A tube along a curve in the xy plane; open at its ends. u runs around it and v along.
+/// @param curve   for s in [0, 1]; never at rest
+/// @param radius  of the tube at s
+Mesh planar_tube(const std::function<glm::dvec2(double s)>& curve,
+                 const std::function<double(double s)>& radius, Cells cells);
+
 /// The mesh made `factor` times larger.
 Mesh scaled(Mesh mesh, float factor);
+
+/// The mesh turned, then shifted.
+Mesh moved(Mesh mesh, const glm::vec3& by,
+           const glm::quat& rotation = glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
+
+/// Several meshes as one.
+Mesh joined(std::span<const Mesh> parts);
+
+/// The mesh with texture coordinates in lengths: each triangle is seen from the axis that it faces
+/// most, with u to the right and v up (on floors v is -z). For meshes whose faces share no
+/// vertices, such as rounded boxes.
+Mesh with_metric_uv(Mesh mesh);
 
 }  // namespace estara::examples

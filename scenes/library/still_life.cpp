@@ -1,11 +1,10 @@
 // Turned wood, marble and stone on a round cobbled table; the camera goes once around them.
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "all.h"
 #include "keys.h"
-#include "shapes.h"
+#include "pieces.h"
 
 namespace estara::examples {
 
@@ -77,17 +76,6 @@ const Material plaster{"plaster",
                        {{"Ka", {0.2}}, {"Kd", {0.7}}, {"Ks", {0}}, {"Cs", {0.3, 0.24, 0.2}}},
                        dvec3(0.3, 0.24, 0.2)};
 
-/// Something on the table.
-struct Piece {
-    const char* name;
-    Material material;
-    Mesh mesh;  ///< in scene units
-    vec3 position;
-    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
-    /// Object space units in a scene unit: how dense the solid patterns get.
-    float pattern = 1.0f;
-};
-
 Mesh table() {
     const glm::dvec2 rim_to_centre[]{{1.54, -0.14}, {1.59, -0.13}, {1.62, -0.09}, {1.62, -0.04},
                                      {1.59, -0.01}, {1.54, 0},     {1.5, 0},      {1.1, 0},
@@ -126,19 +114,6 @@ Mesh goblet() {
                                   {0.175, 0.6},  {0.17, 0.615}, {0.16, 0.6},   {0.17, 0.47},
                                   {0.13, 0.37},  {0.05, 0.32},  {0, 0.31}};
     return lathe(out_and_in, {140, 140});
-}
-
-/// How far a turned mesh reaches below its origin.
-float depth(const Mesh& mesh, const glm::quat& rotation) {
-    float lowest = std::numeric_limits<float>::infinity();
-    for (const vec3& p : mesh.P) lowest = std::min(lowest, (rotation * p).y);
-    return -lowest;
-}
-
-/// Puts a piece on the plane y = position.y.
-Piece resting(Piece piece) {
-    piece.position.y += depth(piece.mesh, piece.rotation);
-    return piece;
 }
 
 /// Three balls in the bowl and a fourth upon them.
@@ -186,12 +161,6 @@ std::vector<Piece> arrangement() {
     };
     add_balls(pieces, bowl_position);
     return pieces;
-}
-
-void add_piece(GlbBuilder& out, const Piece& piece) {
-    const int mesh = out.add_mesh(piece.name, scaled(piece.mesh, piece.pattern),
-                                  out.add_material(piece.material));
-    out.add_object(piece.name, mesh, {piece.position, piece.rotation, 1.0f / piece.pattern});
 }
 
 void add_lamps(GlbBuilder& out) {
