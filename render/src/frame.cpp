@@ -68,6 +68,7 @@ struct FrameRenderer::Impl {
     FrameSettings settings;
     std::vector<glm::vec2> pattern;
     std::vector<std::vector<glm::vec3>> face_normals;  ///< by object
+    std::vector<std::vector<glm::vec3>> tangents;      ///< by object, of those that wear dPdu
     tbb::enumerable_thread_specific<TileRenderer> tiles;
     std::unique_ptr<Reprojection> reprojection;        ///< once a cache is used
     std::vector<std::unique_ptr<NewRecords>> buffers;  ///< not in use
@@ -88,10 +89,17 @@ struct FrameRenderer::Impl {
 
 FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSettings& settings)
     : m_impl(new Impl{
-          scene, rays, settings, sample_pattern(settings.spp, settings.seed), {}, {}, {}, {}}) {
+          scene, rays, settings, sample_pattern(settings.spp, settings.seed), {}, {}, {}, {}, {}}) {
     m_impl->face_normals.resize(scene.objects.size());
+    m_impl->tangents.resize(scene.objects.size());
     tbb::parallel_for(std::size_t{0}, scene.objects.size(), [&](std::size_t i) {
-        m_impl->face_normals[i] = face_normals(scene.objects[i].mesh);
+        const Object& object = scene.objects[i];
+        m_impl->face_normals[i] = face_normals(object.mesh);
+        if (object.shader->domain() != Domain::surface) return;
+        m_impl->tangents[i].resize(object.mesh.triangles.size());
+        for (std::uint32_t t = 0; t < object.mesh.triangles.size(); ++t) {
+            m_impl->tangents[i][t] = face_tangent(object.mesh, t);
+        }
     });
 }
 
@@ -174,6 +182,7 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
                                lights,
                                shading,
                                my.face_normals,
+                               my.tangents,
                                my.pattern,
                                my.settings,
                                cache != nullptr ? my.reprojection.get() : nullptr};

@@ -188,8 +188,8 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
     // A Domain::point shader reads no texture coordinates, and what a lookup misses of another's is
     // given them later.
     const ObjectShading& shading = shading_of(frame, group);
-    const bool needs_uv = shading.shader->domain() == Domain::surface && !shading.pyramid;
-    const glm::vec2* const uv = needs_uv && mesh.has_uv() ? mesh.uv.data() : nullptr;
+    const bool on_surface = shading.shader->domain() == Domain::surface && !shading.pyramid;
+    const glm::vec2* const uv = on_surface && mesh.has_uv() ? mesh.uv.data() : nullptr;
     SurfaceBatch& surface = m_samples.surface;
     // Vertices are anywhere in memory: those of some samples are asked for before any is used.
     constexpr int ahead = 32;
@@ -237,10 +237,11 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
                  cancelled ? g.z : n.z / length});
         }
     });
-    if (!needs_uv) return;
+    if (!on_surface) return;
+    const glm::vec3* const tangents = frame.tangents[object].data();
     for (int j = group.first; j < group.last; ++j) {
-        const MeshPoint point = mesh_point_of(frame, group, j);
-        put(surface.dPdu, j, tangent(mesh, point));
+        const glm::vec3 dPdu = tangents[m_hits.triangle[m_order[j]]];
+        put(surface.dPdu, j, dPdu == glm::vec3(0.0f) ? tangent_without_uv(at(surface.N, j)) : dPdu);
     }
 }
 

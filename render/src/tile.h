@@ -41,6 +41,7 @@ struct FrameContext {
     std::span<const PosedLight> lights;
     std::span<const ObjectShading> shading;                ///< by object
     std::span<const std::vector<glm::vec3>> face_normals;  ///< by object
+    std::span<const std::vector<glm::vec3>> tangents;  ///< by object: face_tangent()s, if needed
     std::span<const glm::vec2> pattern;
     FrameSettings settings;
     const Reprojection* reuse;  ///< null: every sample is a new ray

@@ -18,15 +18,6 @@ glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& otherwise) noexcept {
     return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : otherwise;
 }
 
-/// A tangent that goes round the y axis, eastwards: it varies smoothly everywhere but at the poles.
-glm::vec3 tangent_eastwards(const glm::vec3& N) noexcept {
-    const glm::dvec3 n(N);
-    const glm::dvec3 east = glm::cross(glm::dvec3(0.0, 1.0, 0.0), n);
-    // Below this sine the direction is rounding error.
-    if (glm::length(east) > 1e-4) return unit_or(east, glm::vec3(1.0f, 0.0f, 0.0f));
-    return unit_or(glm::cross(n, glm::dvec3(0.0, 0.0, 1.0)), glm::vec3(1.0f, 0.0f, 0.0f));
-}
-
 /// From a triangle's first corner to the others, in double: their differences and products are then
 /// exact enough for slivers and far from the origin.
 struct Edges {
@@ -121,15 +112,25 @@ MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b
     return point;
 }
 
+glm::vec3 tangent_without_uv(const glm::vec3& N) noexcept {
+    const glm::dvec3 n(N);
+    const glm::dvec3 east = glm::cross(glm::dvec3(0.0, 1.0, 0.0), n);
+    // Below this sine the direction is rounding error.
+    if (glm::length(east) > 1e-4) return unit_or(east, glm::vec3(1.0f, 0.0f, 0.0f));
+    return unit_or(glm::cross(n, glm::dvec3(0.0, 0.0, 1.0)), glm::vec3(1.0f, 0.0f, 0.0f));
+}
+
+glm::vec3 face_tangent(const Mesh& mesh, std::uint32_t triangle) noexcept {
+    if (!mesh.has_uv()) return glm::vec3(0.0f);
+    const glm::uvec3 t = mesh.triangles[triangle];
+    const glm::dvec2 uv0(mesh.uv[t.x]);
+    return tangent_along_u(edges_of(mesh, t), glm::dvec2(mesh.uv[t.y]) - uv0,
+                           glm::dvec2(mesh.uv[t.z]) - uv0);
+}
+
 glm::vec3 tangent(const Mesh& mesh, const MeshPoint& point) noexcept {
-    glm::vec3 dPdu(0.0f);
-    if (mesh.has_uv()) {
-        const glm::uvec3 t = mesh.triangles[point.triangle];
-        const glm::dvec2 uv0(mesh.uv[t.x]);
-        dPdu = tangent_along_u(edges_of(mesh, t), glm::dvec2(mesh.uv[t.y]) - uv0,
-                               glm::dvec2(mesh.uv[t.z]) - uv0);
-    }
-    return dPdu == glm::vec3(0.0f) ? tangent_eastwards(point.N) : dPdu;
+    const glm::vec3 dPdu = face_tangent(mesh, point.triangle);
+    return dPdu == glm::vec3(0.0f) ? tangent_without_uv(point.N) : dPdu;
 }
 
 std::string mesh_digest(const Mesh& mesh) {

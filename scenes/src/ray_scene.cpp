@@ -146,14 +146,20 @@ void fill(const RayBatch& rays, const Prepared& prepared, int first, Packet& lan
         lanes.valid[i] = prepared.valid[j];
         any |= prepared.octant[j] & prepared.valid[j];
         all &= prepared.octant[j] | ~prepared.valid[j];
-        out.org_x[i] = rays.origin[0][j];
-        out.org_y[i] = rays.origin[1][j];
-        out.org_z[i] = rays.origin[2][j];
-        out.dir_x[i] = rays.direction[0][j] * scale;
-        out.dir_y[i] = rays.direction[1][j] * scale;
-        out.dir_z[i] = rays.direction[2][j] * scale;
-        out.tnear[i] = (rays.tmin[j] > 0.0f ? rays.tmin[j] : 0.0f) / scale;
-        out.tfar[i] = rays.tmax[j] / scale;
+        // Where Embree cuts a packet in two (AVX2) it looks at rays that are not valid too: they
+        // are given to it as empty ones, without NaN.
+        const bool valid = prepared.valid[j] != 0;
+        const auto given = [valid](float value, float otherwise) {
+            return valid ? value : otherwise;
+        };
+        out.org_x[i] = given(rays.origin[0][j], 0.0f);
+        out.org_y[i] = given(rays.origin[1][j], 0.0f);
+        out.org_z[i] = given(rays.origin[2][j], 0.0f);
+        out.dir_x[i] = given(rays.direction[0][j] * scale, 0.0f);
+        out.dir_y[i] = given(rays.direction[1][j] * scale, 0.0f);
+        out.dir_z[i] = given(rays.direction[2][j] * scale, 1.0f);
+        out.tnear[i] = given((rays.tmin[j] > 0.0f ? rays.tmin[j] : 0.0f) / scale, 1.0f);
+        out.tfar[i] = given(rays.tmax[j] / scale, 0.0f);
         out.time[i] = 0.0f;
         out.mask[i] = ~0u;
         out.id[i] = unsigned(i);

@@ -201,7 +201,7 @@ TEST(Bake, SaysWhenABoundIsOutOfReach) {
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), ExitStatus::failed);
         EXPECT_THAT(error.what(), testing::MatchesRegex(
-                                      "RMSE 1e-05 is out of reach within --max-memory 64 MiB: the "
+                                      "RMSE 1e-05 is out of reach within the 64 MiB that --max-memory leaves: the "
                                       "smallest voxel that fits, .*, reached .*"));
     }
 }

@@ -52,8 +52,16 @@ std::vector<glm::vec3> face_normals(const Mesh& mesh);
 /// @param b1, b2  barycentric coordinates as Embree's u and v: >= 0, b1 + b2 <= 1
 MeshPoint mesh_point(const Mesh& mesh, std::uint32_t triangle, float b1, float b2) noexcept;
 
-/// Change of P with u at a point of the mesh, object space. Never zero: some tangent where uv does
-/// not give one. Not a part of MeshPoint because few need it and it costs as much as the rest.
+/// Change of P with u over a triangle, object space; zero where uv does not say.
+glm::vec3 face_tangent(const Mesh& mesh, std::uint32_t triangle) noexcept;
+
+/// A tangent that goes round the y axis, eastwards: it varies smoothly everywhere but at the poles.
+/// Unit.
+glm::vec3 tangent_without_uv(const glm::vec3& N) noexcept;
+
+/// face_tangent() or, where it is zero, tangent_without_uv(): change of P with u at a point of the
+/// mesh, object space. Never zero: some tangent where uv does not give one. Not a part of MeshPoint
+/// because few need it and it costs as much as the rest.
 glm::vec3 tangent(const Mesh& mesh, const MeshPoint& point) noexcept;
 
 /// 16 hex digits that change whenever a position, texture coordinate, normal or triangle does.
