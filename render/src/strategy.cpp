@@ -83,9 +83,9 @@ StrategyChoice weigh(const Trial& trial, std::size_t o, bool has_grid, bool keep
 
     const double straight = t.without_reuse();
     double best = straight / least_gain;
-    choice.chosen = Strategy::direct;
+    choice.cost = straight;
     if (has_grid && grid.evaluated > 0 && straight - bake + choice.lookup < best) {
-        best = straight - bake + choice.lookup;
+        best = choice.cost = straight - bake + choice.lookup;
         choice.chosen = Strategy::grid;
     }
     if (!may_cache || cache.recalled == 0) return choice;
@@ -95,7 +95,11 @@ StrategyChoice weigh(const Trial& trial, std::size_t o, bool has_grid, bool keep
     const double recalled = double(cache.recalled) / double(cache.recalled + cache.evaluated);
     choice.frames = recalled < 1.0 ? std::min(window, 1.0 / (1.0 - recalled)) : window;
     choice.speedup = predicted_speedup(t, choice.frames);
-    if (time_with_reuse(t, choice.frames) / choice.frames < best) choice.chosen = Strategy::cache;
+    const double reuse = time_with_reuse(t, choice.frames) / choice.frames;
+    if (reuse < best) {
+        choice.cost = reuse;
+        choice.chosen = Strategy::cache;
+    }
     return choice;
 }
 

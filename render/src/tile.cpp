@@ -421,7 +421,13 @@ void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& gr
 void TileRenderer::light(const FrameContext& frame, int number) {
     const PosedLight& light = frame.lights[std::size_t(number)];
     const Stopwatch time;
-    for (const Group& group : m_groups) reach_samples(frame, group, light);
+    for (const Group& group : m_groups) {
+        // Of a point whose light is kept only highlights are asked for.
+        const bool kept =
+            group.recalled && frame.reuse->cache().layout(int(group.instance)).is_lit();
+        if (kept && !shading_of(frame, group).shader->glossy()) continue;
+        reach_samples(frame, group, light);
+    }
     statistics.light_seconds += time.seconds();
     view(frame, true, m_reach.gloss);
     if (light.shadow && frame.settings.shadows) {
@@ -541,9 +547,13 @@ void TileRenderer::close(const FrameContext& frame) {
 
 void TileRenderer::view(const FrameContext& frame, bool lit, Planes& Ci) {
     for (const Group& group : m_groups) {
+        const BoundShader& shader = *shading_of(frame, group).shader;
+        if (lit && !shader.glossy()) {
+            for (Plane& plane : Ci) std::fill(plane + group.first, plane + group.last, 0.0f);
+            continue;
+        }
         const Stopwatch time;
-        shading_of(frame, group)
-            .shader->view(m_planes.data(), m_samples.seen, group.first, group.last, lit, Ci[0]);
+        shader.view(m_planes.data(), m_samples.seen, group.first, group.last, lit, Ci[0]);
         const double seconds = time.seconds();
         statistics.view_seconds += seconds;
         cost_of(frame, group).view += seconds;

@@ -138,6 +138,8 @@ struct Blocks {
         return {color, bumped(x.N, depths * slope + flat * (slope.x * u + slope.y * v))};
     }
 
+    bool glossy() const noexcept { return false; }  // matte
+
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return matte(b.color, Ka, Kd, seen);
     }

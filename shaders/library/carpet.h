@@ -56,6 +56,8 @@ struct Carpet {
         return {Cs * (scuffed * pile)};
     }
 
+    bool glossy() const noexcept { return false; }  // matte
+
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return matte(b.color, Ka, Kd, seen);
     }

@@ -81,6 +81,9 @@ struct Cobblestone {
         return {paint(v.f2 - v.f1, cellnoise(v.feature1 + glm::vec2(-67.0f, 55.0f)))};
     }
 
+    bool glossy() const noexcept { return Ks > 0.0f; }
+    float highlight_cosine() const noexcept { return highlight_edge(roughness, Ks); }
+
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return plastic(b.color, Ka, Kd, Ks, roughness, glm::vec3(1.0f), seen);
     }

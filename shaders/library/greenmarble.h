@@ -78,6 +78,9 @@ struct Greenmarble {
         return {mix(substrate, veincolor, veins * mask)};
     }
 
+    bool glossy() const noexcept { return Ks > 0.0f; }
+    float highlight_cosine() const noexcept { return highlight_edge(roughness, Ks); }
+
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return plastic(b.color, Ka, Kd, Ks, roughness, glm::vec3(1.0f), seen);
     }

@@ -40,6 +40,11 @@ struct Plastic {
 
     ESTARA_KERNEL Baked bake(const SurfacePoint&) const noexcept { return {Cs}; }
 
+    bool glossy() const noexcept { return Ks > 0.0f; }
+    float highlight_cosine() const noexcept {
+        return highlight_edge(roughness, Ks * largest(specularcolor));
+    }
+
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return plastic(b.color, Ka, Kd, Ks, roughness, specularcolor, seen);
     }

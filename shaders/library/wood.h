@@ -53,6 +53,9 @@ struct Wood {
         return {mix(lightwood, darkwood, r), 0.3f * r + 0.7f};
     }
 
+    bool glossy() const noexcept { return Ks > 0.0f; }
+    float highlight_cosine() const noexcept { return highlight_edge(roughness, Ks); }
+
     ESTARA_KERNEL glm::vec3 view(const Baked& b, const Seen& seen) const noexcept {
         return matte(b.color, Ka, Kd, seen) + b.specular * Ks * specular(seen, roughness);
     }

@@ -84,6 +84,7 @@ public:
     Domain domain() const noexcept override { return domain_of(m_shader); }
     bool needs_uv() const noexcept override { return estara::needs_uv(m_shader); }
     bool layered() const noexcept override { return estara::layered(m_shader); }
+    bool glossy() const noexcept override { return estara::glossy(m_shader); }
 
     std::vector<glm::vec3> values() const override {
         std::vector<glm::vec3> v;

@@ -1,6 +1,8 @@
 // The loops over a batch: scalar code that the compiler makes wide, once for every instruction set.
 #pragma once
 
+#include <algorithm>
+
 #include "bound.h"
 #include "estara/shaders/noise.h"
 #include "estara/shaders/shader.h"
@@ -116,28 +118,93 @@ ESTARA_KERNEL void load(typename S::Baked& baked, const float* planes, int i) no
     }
 }
 
+/// Point i of a batch as view() sees it.
 /// @tparam lit  the batch's light alone, or what E, A and the surface itself make
+template <bool lit, class S>
+ESTARA_KERNEL glm::vec3 view_point(const S& shader, const float* planes, const SeenBatch& seen,
+                                   const glm::vec3& A, int i) noexcept {
+    typename S::Baked baked;
+    load<S>(baked, planes, i);
+    const Light light{{seen.L[0][i], seen.L[1][i], seen.L[2][i]},
+                      {seen.Cl[0][i], seen.Cl[1][i], seen.Cl[2][i]}};
+    const Seen one{{seen.N[0][i], seen.N[1][i], seen.N[2][i]},
+                   seen.V[i],
+                   lit ? glm::vec3(0.0f) : glm::vec3(seen.E[0][i], seen.E[1][i], seen.E[2][i]),
+                   lit ? glm::vec3(0.0f) : A,
+                   std::span<const Light>(&light, lit ? 1 : 0),
+                   lit ? 0.0f : 1.0f};
+    return shader.view(baked, one);
+}
+
 template <bool lit, class S>
 ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatch& seen, int first,
                              int last, float* __restrict Ci) noexcept {
-    const glm::vec3 A = lit ? glm::vec3(0.0f) : seen.A;
+    const glm::vec3 A = seen.A;
     constexpr int stride = SeenBatch::capacity;
 #pragma GCC ivdep
     for (int i = first; i < last; ++i) {
-        typename S::Baked baked;
-        load<S>(baked, planes, i);
-        const Light light{{seen.L[0][i], seen.L[1][i], seen.L[2][i]},
-                          {seen.Cl[0][i], seen.Cl[1][i], seen.Cl[2][i]}};
-        const Seen one{{seen.N[0][i], seen.N[1][i], seen.N[2][i]},
-                       seen.V[i],
-                       lit ? glm::vec3(0.0f) : glm::vec3(seen.E[0][i], seen.E[1][i], seen.E[2][i]),
-                       A,
-                       std::span<const Light>(&light, lit ? 1 : 0),
-                       lit ? 0.0f : 1.0f};
-        const glm::vec3 color = shader.view(baked, one);
+        const glm::vec3 color = view_point<lit>(shader, planes, seen, A, i);
         Ci[i] = color.x;
         Ci[stride + i] = color.y;
         Ci[2 * stride + i] = color.z;
+    }
+}
+
+/// The points of a batch at which a light shows a highlight, side by side.
+struct Highlights {
+    int near[SeenBatch::capacity];
+    int point[SeenBatch::capacity];
+    SeenBatch seen;
+    float Ci[3][SeenBatch::capacity];
+};
+
+/// near[i] = 1 where N.H is at least `cosine` and the light is not 0. H is not normalised:
+/// N.(L + V) >= cosine |L + V|.
+ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int last,
+                             int* __restrict near) noexcept {
+    const float square = cosine * cosine;
+#pragma GCC ivdep
+    for (int i = first; i < last; ++i) {
+        const glm::vec3 h = glm::vec3(seen.L[0][i], seen.L[1][i], seen.L[2][i]) + seen.V[i].vec();
+        const float d = seen.N[0][i] * h.x + seen.N[1][i] * h.y + seen.N[2][i] * h.z;
+        const bool lit = (seen.Cl[0][i] > 0.0f) | (seen.Cl[1][i] > 0.0f) | (seen.Cl[2][i] > 0.0f);
+        near[i] = lit & (d > 0.0f) & (d * d >= square * glm::dot(h, h)) ? 1 : 0;
+    }
+}
+
+/// What a light alone makes, where that is a highlight and nothing else: evaluated where there is
+/// one, 0 elsewhere. A point has the same bits in any batch.
+template <class S>
+void view_highlights(const S& shader, float cosine, const float* planes, const SeenBatch& seen,
+                     int first, int last, float* Ci, InstructionSet limit) noexcept {
+    constexpr int stride = SeenBatch::capacity;
+    constexpr int floats = int(sizeof(typename S::Baked) / sizeof(float));
+    thread_local Highlights found;
+    thread_local float picked[floats * stride];
+    Highlights* const to = &found;
+    wide([=, &seen]() ESTARA_LOOP { near_loop(cosine, seen, first, last, to->near); }, limit);
+    int count = 0;
+    for (int i = first; i < last; ++i) {
+        to->point[count] = i;
+        count += to->near[i];
+    }
+    for (int c = 0; c < 3; ++c) std::fill(Ci + c * stride + first, Ci + c * stride + last, 0.0f);
+    if (count == 0) return;
+    const auto pick = [&](const float* from, float* plane) {
+        for (int k = 0; k < count; ++k) plane[k] = from[to->point[k]];
+    };
+    for (int c = 0; c < 3; ++c) {
+        pick(seen.N[c], to->seen.N[c]);
+        pick(seen.L[c], to->seen.L[c]);
+        pick(seen.Cl[c], to->seen.Cl[c]);
+    }
+    to->seen.V.pick(seen.V, to->point, count);
+    for (int k = 0; k < floats; ++k) pick(planes + k * stride, picked + k * stride);
+    const float* const baked = picked;
+    wide([=]() ESTARA_LOOP { view_loop<true>(shader, baked, to->seen, 0, count, to->Ci[0]); },
+         limit);
+    for (int c = 0; c < 3; ++c) {
+        for (int k = 0; k < count; ++k) Ci[c * stride + to->point[k]] = to->Ci[c][k];
     }
 }
 
@@ -158,6 +225,13 @@ template <class S>
 void Loops<S>::view(const S& shader, const float* planes, const SeenBatch& seen, int first,
                     int last, bool lit, float* Ci, InstructionSet limit) noexcept {
     if (lit) {
+        if constexpr (HasHighlight<S>) {
+            // Where highlights are broad, looking for them costs what it saves (measured).
+            const float cosine = shader.highlight_cosine();
+            if (cosine > 0.7f) {
+                return view_highlights(shader, cosine, planes, seen, first, last, Ci, limit);
+            }
+        }
         wide([=, &seen]() ESTARA_LOOP { view_loop<true>(shader, planes, seen, first, last, Ci); },
              limit);
     } else {

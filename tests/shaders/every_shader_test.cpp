@@ -296,6 +296,27 @@ TEST_P(EveryShader, ViewIsFiniteAndNeverDarkerThanBlack) {
     }
 }
 
+TEST_P(EveryShader, IsGlossyWhereALightAloneShows) {
+    const BoundShaderPtr shader = bound();
+    const SurfaceBatch batch = test::random_batch(4, 2.0f, 0.02f);
+    const std::vector<float> planes = test::bake(*shader, batch);
+    test::Random random(9);
+    SeenBatch seen{};
+    for (int i = 0; i < capacity; ++i) {
+        const glm::vec3 N = random.direction();
+        const Light light{N, glm::vec3(1.0f)};  // a highlight straight at the eye
+        test::set(seen, i, Seen{N, Camera::direction(N), {}, {}, {&light, 1}});
+    }
+    std::vector<float> Ci(3 * capacity);
+    shader->view(planes.data(), seen, 0, capacity, true, Ci.data());
+    const float brightest = *std::max_element(Ci.begin(), Ci.end());
+    EXPECT_EQ(brightest > 0.0f, shader->glossy());
+    for (const ParamInfo& param : info().params) {
+        if (param.name != "Ks") continue;
+        EXPECT_FALSE(bound({{"Ks", {0.0f}}})->glossy());
+    }
+}
+
 TEST_P(EveryShader, ViewHasTheSameBitsOnEveryInstructionSetAndInEveryPart) {
     const std::vector<float> planes = test::bake(*bound(), test::random_batch(17));
     const auto seen = random_views(18);

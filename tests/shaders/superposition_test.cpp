@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "library/all.h"
+#include "src/loops.h"
 #include "sampling.h"
 #include "view.h"
 
@@ -44,6 +45,80 @@ void expect_superposition() {
 template <class... S>
 void expect_superposition_of(std::type_identity<std::tuple<S...>>) {
     (expect_superposition<S>(), ...);
+}
+
+/// What the loops leave out of a light's share is no more than highlight_edge() says.
+template <class S>
+void expect_all_highlights() {
+    const S shader;
+    const BoundShaderPtr bound = bind_shader(S::name, {}, true).shader;
+    test::Random random(2);
+    float largest = 0.0f;
+    for (int round = 0; round < 40; ++round) {
+        SurfaceBatch batch = test::random_batch(round, 2.0f, 0.01f);
+        const std::vector<float> planes = test::bake(*bound, batch);
+        SeenBatch seen{};
+        std::vector<glm::vec3> expected;
+        for (int i = 0; i < batch.size; ++i) {
+            SurfacePoint x{};
+            x.P = {batch.P[0][i], batch.P[1][i], batch.P[2][i]};
+            x.N = {batch.N[0][i], batch.N[1][i], batch.N[2][i]};
+            x.uv = {batch.uv[0][i], batch.uv[1][i]};
+            x.dPdu = {batch.dPdu[0][i], batch.dPdu[1][i], batch.dPdu[2][i]};
+            x.filter_width = batch.filter_width;
+            const glm::vec3 N = random.direction(), none(0.0f);
+            const ViewDirection V = Camera::direction(random.direction());
+            const Light light{random.direction(),
+                              glm::vec3(random.unit(), 1.0f, i % 7 ? 0.5f : 0.0f)};
+            const Seen one{N, V, none, none, {&light, 1}, 0.0f};
+            test::set(seen, i, one);
+            glm::vec3 sum(0.0f);
+            if constexpr (!HasOctaves<S>) {
+                sum = shader.view(shader.bake(x), one);
+            } else {  // the record as the loops make it
+                typename S::Baked baked;
+                detail::load<S>(baked, planes.data(), i);
+                sum = shader.view(baked, one);
+            }
+            expected.push_back(sum);
+        }
+        std::vector<float> Ci(3 * SeenBatch::capacity, -1.0f);
+        bound->view(planes.data(), seen, 0, batch.size, true, Ci.data());
+        for (int i = 0; i < batch.size; ++i) {
+            for (int c = 0; c < 3; ++c) {
+                const float got = Ci[std::size_t(c * SeenBatch::capacity + i)];
+                const float error = std::fabs(got - expected[std::size_t(i)][c]);
+                ASSERT_LE(error, 1e-6f * std::fabs(got) + 1.01f * negligible_highlight) << S::name;
+                largest = std::max(largest, error);
+            }
+        }
+    }
+    if constexpr (HasHighlight<S>) {
+        // Broad highlights are evaluated everywhere; of narrow ones something has been left out.
+        if (shader.highlight_cosine() > 0.7f) {
+            EXPECT_GT(largest, 0.0f) << S::name;
+        }
+    }
+}
+
+template <class... S>
+void expect_all_highlights_of(std::type_identity<std::tuple<S...>>) {
+    (expect_all_highlights<S>(), ...);
+}
+
+TEST(View, LeavesOutHighlightsThatNobodySees) {
+    expect_all_highlights_of(std::type_identity<AllShaders>());
+}
+
+TEST(HighlightEdge, IsWhereTheHighlightIsNegligible) {
+    for (const float roughness : {0.001f, 0.01f, 0.1f, 0.3f, 1.0f}) {
+        for (const float weight : {0.1f, 1.0f, 40.0f}) {
+            const float edge = highlight_edge(roughness, weight);
+            const double there = weight * std::pow(double(edge), 8.0 / double(roughness));
+            EXPECT_NEAR(there, 0x1p-20, 0x1p-20 * 0.05) << roughness << ' ' << weight;
+        }
+    }
+    EXPECT_EQ(highlight_edge(0.1f, 0.0f), 2.0f);
 }
 
 TEST(View, IsTheSumOfWhatEveryLightMakes) {

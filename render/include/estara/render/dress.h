@@ -18,6 +18,7 @@ namespace estara {
 struct StrategyChoice {
     Strategy chosen = Strategy::direct;
     SampleTimes times;
+    double cost = 0.0;          ///< predicted seconds a sample as chosen, rays to the eye left out
     double lookup = 0.0;        ///< seconds a sample from its grid; 0 without one
     double frames = 1.0;        ///< that a point serves
     double speedup = 1.0;       ///< of reuse over them, predicted

@@ -39,7 +39,8 @@ Spread spread(std::vector<double> values);
 struct Summary {
     Spread frame, evaluation;  ///< seconds
     std::uint64_t misses = 0, lookups = 0, bad_pixels = 0;
-    std::optional<Spread> direct_frame, direct_evaluation;
+    Spread shading;  ///< all but rays to the eye: light, shadow rays and the cache included
+    std::optional<Spread> direct_frame, direct_evaluation, direct_shading;
     std::optional<ImageError> error;
 };
 

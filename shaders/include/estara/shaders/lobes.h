@@ -22,6 +22,21 @@ ESTARA_KERNEL glm::vec3 half_vector(const glm::vec3& a, const glm::vec3& b) noex
     return select(opposite, glm::vec3(0.0f), h / std::sqrt(opposite ? 1.0f : length2));
 }
 
+/// What a light alone may be wrong by where it is taken to show no highlight, for Cl = 1: far below
+/// an 8-bit step, and below the rounding of a half near 1.
+inline constexpr float negligible_highlight = 0x1p-20f;
+
+/// The cosine between N and H below which weight * specular() of a light with Cl = 1 is less than
+/// negligible_highlight: most of a surface, for which a highlight need not be evaluated.
+/// @param roughness  (0, 1]
+/// @param weight     largest component, >= 0
+/// @return [0, 1], or 2 for a weight so small that there never is a highlight
+ESTARA_KERNEL float highlight_edge(float roughness, float weight) noexcept {
+    const float share = negligible_highlight / (weight > 0.0f ? weight : 1.0f);
+    const bool ever = weight > negligible_highlight;
+    return ever ? exp2_kernel(log2_kernel(share) * roughness / specular_exponent) : 2.0f;
+}
+
 /// RSL's specular(): sum over the lights of Cl <N.H>+^(8 / roughness), H the unit half vector.
 /// 0 for a light straight behind the eye's ray, where there is no half vector.
 /// @param roughness  (0, 1]

@@ -28,6 +28,11 @@ ESTARA_KERNEL float mod(float x, float b) noexcept {
     return r < 0.0f ? 0.0f : (r >= b ? 0.0f : r);  // rounding may leave [0, b) by one ulp
 }
 
+ESTARA_KERNEL float largest(const glm::vec3& v) noexcept {
+    const float xy = v.x > v.y ? v.x : v.y;
+    return xy > v.z ? xy : v.z;
+}
+
 /// a if so, else b, without a branch.
 ESTARA_KERNEL float select(bool so, float a, float b) noexcept { return so ? a : b; }
 ESTARA_KERNEL glm::vec3 select(bool so, const glm::vec3& a, const glm::vec3& b) noexcept {

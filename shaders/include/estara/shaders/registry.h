@@ -100,6 +100,9 @@ public:
     /// in a grid, and its record is kept in the renderer's cache.
     virtual bool layered() const noexcept = 0;
 
+    /// Whether view() makes anything of the lights by themselves, besides E.
+    virtual bool glossy() const noexcept = 0;
+
     /// Value of every parameter, in the order of info().params.
     virtual std::vector<glm::vec3> values() const = 0;
 

@@ -17,6 +17,9 @@
 //     int     octaves() const noexcept;             their number, where parameters decide it
 //     S       resolved(bool has_uv) const noexcept; settles parameters that depend on the mesh
 //     bool    layered() const noexcept;             see BoundShader::layered(); default: false
+//     bool    glossy() const noexcept;              see BoundShader::glossy(); default: true
+//     float   highlight_cosine() const noexcept;    N.H below which a light alone shows nothing
+//                                                   (lobes.h, highlight_edge()): not evaluated
 //     bool    perturbs_normal() const noexcept;     whether its normal channel, the last one, is
 //                                                   used with these parameters; default: true
 #pragma once
@@ -66,6 +69,13 @@ concept HasFiveSums = requires(const S& shader, const SurfacePoint& x) {
 template <class S>
 concept HasOctaves = HasFiveSums<S> || requires(const S& shader, const SurfacePoint& x) {
     { shader.octave(x, 0) }
+    noexcept->std::same_as<float>;
+};
+
+/// Whether S says where the highlight of a light ends.
+template <class S>
+concept HasHighlight = requires(const S& shader) {
+    { shader.highlight_cosine() }
     noexcept->std::same_as<float>;
 };
 
@@ -161,6 +171,15 @@ bool layered(const S& shader) noexcept {
         return shader.layered();
     } else {
         return false;
+    }
+}
+
+template <class S>
+bool glossy(const S& shader) noexcept {
+    if constexpr (requires { shader.glossy(); }) {
+        return shader.glossy();
+    } else {
+        return true;
     }
 }
 
