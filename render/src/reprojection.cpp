@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "estara/shaders/wide.h"
 
@@ -41,24 +42,67 @@ void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
     in_parallel(m_slots, 1u << 16, [&](std::size_t first, std::size_t last) {
         std::fill(m_claims.get() + first, m_claims.get() + last, ~std::uint64_t{0});
     });
-    in_parallel(std::size_t(cache.page_count()), 8, [&](std::size_t first, std::size_t last) {
+    const auto pages = std::size_t(cache.page_count());
+    m_in_view.assign(pages, 0);
+    in_parallel(pages, 8, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
-            const int instance = cache.page(std::uint32_t(p)).instance;
-            if (instance < 0 || !instances[std::size_t(instance)].is_there) continue;
-            claim(pose, instances[std::size_t(instance)], int(p));
+            const ReuseCache::Page& page = cache.page(std::uint32_t(p));
+            if (page.instance < 0) continue;
+            const PosedInstance& instance = instances[std::size_t(page.instance)];
+            if (!instance.is_there || !may_be_seen(pose, instance, page)) continue;
+            m_in_view[p] = 1;
+            claim(pose, instance, int(p));
         }
     });
+    count_serving();
+    cache.queue_unused(m_in_view);
+}
+
+/// Whether the ball around a page's points reaches into the view.
+bool Reprojection::may_be_seen(const PinholePose& pose, const PosedInstance& instance,
+                               const ReuseCache::Page& page) const noexcept {
+    const glm::vec3 middle = 0.5f * (page.low + page.high);
+    const glm::vec3 centre(instance.world_from_object * glm::vec4(middle, 1.0f));
+    // A little more for the rounding of all this, far from the origin too.
+    const float radius =
+        0.5f * glm::distance(page.low, page.high) * instance.largest_scale * 1.01f +
+        1e-5f * glm::length(centre - pose.eye) + 1e-6f * glm::length(centre);
+    const glm::vec3 d = centre - pose.eye;
+    const float z = glm::dot(d, pose.forward);
+    const float ty = pose.tan_half_yfov, tx = ty * float(m_width) / float(m_height);
+    const auto outside = [&](float x, float t) {
+        return std::abs(x) - t * z > radius * std::sqrt(1.0f + t * t);
+    };
+    return !(z < -radius || outside(glm::dot(d, pose.right), tx) ||
+             outside(glm::dot(d, pose.up), ty));
+}
+
+/// How many points of each page have won a sample.
+void Reprojection::count_serving() {
+    std::vector<int> serving(m_in_view.size(), 0);
     in_parallel(m_slots, 1u << 14, [&](std::size_t first, std::size_t last) {
-        std::uint32_t previous = ~0u;
+        std::uint32_t current = ~0u;
+        int run = 0;  // neighbours are mostly of one page
+        const auto add = [&] {
+            if (run > 0)
+                std::atomic_ref(serving[current]).fetch_add(run, std::memory_order_relaxed);
+        };
         for (std::size_t s = first; s < last; ++s) {
             RayId id;
             id.bits = m_claims[s] & ~hidden;
-            if (id.bits == none || id.page() == previous) continue;
-            previous = id.page();
-            cache.mark_used(previous);
+            if (id.bits == none) continue;
+            if (id.page() != current) {
+                add();
+                current = id.page();
+                run = 0;
+            }
+            ++run;
         }
+        add();
     });
-    cache.queue_unused();
+    for (std::size_t p = 0; p < serving.size(); ++p) {
+        if (serving[p] > 0) m_cache->mark_used(std::uint32_t(p), serving[p]);
+    }
 }
 
 void Reprojection::claim(const PinholePose& pose, const PosedInstance& instance, int p) noexcept {
@@ -66,6 +110,8 @@ void Reprojection::claim(const PinholePose& pose, const PosedInstance& instance,
     struct Places {
         std::uint32_t pixel[most];
         int stratum[most];  ///< -1: outside the image
+        std::size_t slot[most];
+        int index[most];  ///< of the points inside
     };
     thread_local Places places;
     const ReuseCache::Page& page = m_cache->page(std::uint32_t(p));
@@ -88,13 +134,21 @@ void Reprojection::claim(const PinholePose& pose, const PosedInstance& instance,
             to->pixel[i] = std::uint32_t(row) * std::uint32_t(width) + std::uint32_t(column);
         }
     });
+    // Slots are all over memory: they are asked for before any is used.
     const std::size_t pixels = std::size_t(m_width) * std::size_t(m_height);
+    int count = 0;
     for (int i = 0; i < page.size; ++i) {
         if (places.stratum[i] < 0) continue;
         const std::size_t slot =
-            std::size_t(m_strata.sample(places.stratum[i])) * pixels + std::size_t(places.pixel[i]);
+            std::size_t(m_strata.sample(places.stratum[i])) * pixels + places.pixel[i];
+        __builtin_prefetch(&m_claims[slot], 1);
+        places.slot[count] = slot;
+        places.index[count++] = i;
+    }
+    for (int k = 0; k < count; ++k) {
+        const int i = places.index[k];
         const RayId id(page.born, std::uint32_t(p), i);
-        keep_smallest(m_claims[slot], id.bits | (page.hidden()[i] != 0 ? hidden : 0));
+        keep_smallest(m_claims[places.slot[k]], id.bits | (page.hidden()[i] != 0 ? hidden : 0));
     }
 }
 

@@ -66,12 +66,16 @@ private:
                    std::size_t(m_width) +
                std::size_t(x);
     }
+    bool may_be_seen(const PinholePose& pose, const PosedInstance& instance,
+                     const ReuseCache::Page& page) const noexcept;
     void claim(const PinholePose& pose, const PosedInstance& instance, int page) noexcept;
+    void count_serving();
 
     int m_width, m_height;
     SampleStrata m_strata;
     std::size_t m_slots;
     std::unique_ptr<std::uint64_t[]> m_claims;  ///< by slot: the winner's id, above it hidden
+    std::vector<std::uint8_t> m_in_view;        ///< by page
     ReuseCache* m_cache = nullptr;
 };
 

@@ -1,10 +1,12 @@
 #include "estara/render/reuse_cache.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <tuple>
 
@@ -24,8 +26,12 @@ ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
         throw Error(fmt::format("--cache-memory {}: a page of the cache alone takes {}",
                                 format_bytes(bytes), format_bytes(page_bytes)));
     }
-    // The system gives memory of this size when it is first touched.
-    m_memory.reset(static_cast<float*>(std::aligned_alloc(4096, pages * page_bytes)));
+    // The system gives memory of this size when it is first touched. Records of a tile lie in many
+    // places: huge pages spare the processor the search for them.
+    constexpr std::size_t huge = std::size_t{2} << 20;
+    const std::size_t rounded = (pages * page_bytes + huge - 1) / huge * huge;
+    m_memory.reset(static_cast<float*>(std::aligned_alloc(huge, rounded)));
+    if (m_memory) madvise(m_memory.get(), rounded, MADV_HUGEPAGE);
     if (!m_memory) {
         throw Error(fmt::format("--cache-memory: {} cannot be had", format_bytes(bytes)),
                     ExitStatus::failed);
@@ -53,14 +59,27 @@ void ReuseCache::clear() {
 void ReuseCache::start_frame() {
     ++m_frame;
     m_evicted = 0;
+    for (std::size_t p = 0; p < m_pages.size(); ++p) {
+        Page& page = m_pages[p];
+        page.serving = 0;
+        if (page.instance < 0 || page.idle < most_idle) continue;
+        m_records -= std::uint64_t(page.size);
+        m_evicted += std::uint64_t(page.size);
+        --m_in_use;
+        page.instance = -1;
+        m_free.push_back(int(p));
+    }
     m_open.assign(m_objects.size(), -1);
     m_unused.clear();
 }
 
-void ReuseCache::queue_unused() {
+void ReuseCache::queue_unused(const std::vector<std::uint8_t>& in_view) {
     std::vector<int> unused;
     for (int p = 0; p < page_count(); ++p) {
-        const Page& one = m_pages[std::size_t(p)];
+        Page& one = m_pages[std::size_t(p)];
+        if (!in_view.empty() && in_view[std::size_t(p)] != 0) {
+            one.idle = one.serving * idle_share < one.size ? one.idle + 1 : 0;
+        }
         if (one.instance >= 0 && one.used < m_frame) unused.push_back(p);
     }
     std::sort(unused.begin(), unused.end(), [&](int a, int b) {
@@ -94,6 +113,9 @@ bool ReuseCache::add(int instance, const float* floats) {
         fresh.instance = instance;
         fresh.size = 0;
         fresh.born = fresh.used = m_frame;
+        fresh.idle = 0;
+        fresh.low = glm::vec3(std::numeric_limits<float>::infinity());
+        fresh.high = -fresh.low;
         fresh.floats = layout(instance).floats();
         constexpr std::size_t beside = 3 * sizeof(float) + 1;  // P once more, hidden
         fresh.capacity =
@@ -105,6 +127,10 @@ bool ReuseCache::add(int instance, const float* floats) {
     std::memcpy(p.record(i), floats, std::size_t(p.floats) * sizeof(float));
     for (int c = 0; c < 3; ++c) p.P(c)[i] = floats[RecordLayout::P + c];
     p.hidden()[i] = 0;
+    const glm::vec3 P(floats[RecordLayout::P], floats[RecordLayout::P + 1],
+                      floats[RecordLayout::P + 2]);
+    p.low = glm::min(p.low, P);
+    p.high = glm::max(p.high, P);
     ++m_records;
     return true;
 }

@@ -525,10 +525,10 @@ void TileRenderer::add_light() {
         for (int j = 0; j < count; ++j) {
             const bool visible = reach->visible[j] != 0;
             const bool diffuse = visible & (samples->baked_E[j] == 0);
-            for (int c = 0; c < 3; ++c) {
-                samples->seen.E[c][j] += diffuse ? samples->seen.Cl[c][j] * reach->cosine[j] : 0.0f;
-                samples->Ci[c][j] += visible ? reach->gloss[c][j] : 0.0f;
-            }
+            // Chosen, not multiplied by 0: what has not been asked for may hold anything.
+            const glm::vec3 none(0.0f), E = at(samples->seen.Cl, j) * reach->cosine[j];
+            put(samples->seen.E, j, at(samples->seen.E, j) + select(diffuse, E, none));
+            put(samples->Ci, j, at(samples->Ci, j) + select(visible, at(reach->gloss, j), none));
         }
     });
 }

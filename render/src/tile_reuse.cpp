@@ -34,11 +34,15 @@ void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
             frame.reuse->candidate(m_pixels[i].x, m_pixels[i].y, sample);
         m_needs_ray[i] = found.exists ? 0 : 1;
         if (!found.exists) continue;
-        const ReuseCache::Page& page = cache.page(found.id.page());
-        __builtin_prefetch(page.record(found.id.index()));
+        __builtin_prefetch(&cache.page(found.id.page()));
         listed.candidate[count] = found;
-        listed.instance[count] = std::uint32_t(page.instance);
         listed.pixel[count++] = int(i);
+    }
+    for (int c = 0; c < count; ++c) {
+        const RayId id = listed.candidate[c].id;
+        const ReuseCache::Page& page = cache.page(id.page());
+        __builtin_prefetch(page.record(id.index()));
+        listed.instance[c] = std::uint32_t(page.instance);
     }
     statistics.reuse.misses += m_pixels.size() - std::size_t(count);
     m_candidate_groups.clear();

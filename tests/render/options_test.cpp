@@ -71,18 +71,18 @@ TEST(Options, AreReadAsWritten) {
 TEST(Options, HelpShowsDefaultsAndEndsInTwoExamples) {
     std::string help;
     parse({"--help"}, &help);
-    for (const char* part : {"640x360", "Examples:", "--compare direct", "--strategy NAME=auto", "--window N=100",
-                             "(default: 2.0 GiB)",
-                             "--spp N=4", "--fps N=24", "--progress STYLE=auto"}) {
+    for (const char* part :
+         {"640x360", "Examples:", "--compare direct", "--strategy NAME=auto", "--window N=100",
+          "(default: 2.0 GiB)", "--spp N=4", "--fps N=24", "--progress STYLE=auto"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part << " is not in\n" << help;
     }
     EXPECT_GT(help.find("Examples:"), help.find("--threads"));
 }
 
 TEST(Options, OfTheCacheAreReadAsWritten) {
-    const Options options = parse({"a.glb", "-o", "#.exr", "--strategy", "cache", "--window", "12",
-                                   "--cache-memory", "64M", "--cache-light", "off", "--aov", "hit",
-                                   "--aov", "age", "--aov", "occluded"});
+    const Options options =
+        parse({"a.glb", "-o", "#.exr", "--strategy", "cache", "--window", "12", "--cache-memory",
+               "64M", "--cache-light", "off", "--aov", "hit", "--aov", "age", "--aov", "occluded"});
     EXPECT_EQ(options.strategy, Strategy::cache);
     EXPECT_EQ(options.window, 12);
     EXPECT_EQ(options.cache_memory, std::uint64_t{64} << 20);
@@ -91,7 +91,8 @@ TEST(Options, OfTheCacheAreReadAsWritten) {
 }
 
 TEST(Options, WrongValuesSayWhatThereIs) {
-    EXPECT_EQ(error_with({"--strategy", "grd"}), "--strategy: no 'grd'; there are: auto, grid, cache, direct");
+    EXPECT_EQ(error_with({"--strategy", "grd"}),
+              "--strategy: no 'grd'; there are: auto, grid, cache, direct");
     EXPECT_EQ(error_with({"--compare", "grid"}), "--compare: no 'grid'; there is: direct");
     EXPECT_EQ(error_with({"--compare", "direct", "--strategy", "direct"}),
               "--compare direct needs another strategy than direct to compare it with");

@@ -101,13 +101,36 @@ TEST(ReuseCache, GivesAwayThePageThatHasNotBeenUsedForLongest) {
         for (int i = 0; i < capacity; ++i) cache.add(0, numbered(cache, float(page)).data());
     }
     cache.start_frame();
-    cache.mark_used(0);
+    cache.mark_used(0, 1);
     cache.queue_unused();
     ASSERT_TRUE(cache.add(0, numbered(cache, 3.0f).data()));
     EXPECT_EQ(cache.page(0).born, 0);
     EXPECT_EQ(cache.page(1).born, 3);  // page 1 is older than page 2, and page 0 is in use
     EXPECT_EQ(cache.page(2).born, 2);
     EXPECT_EQ(cache.evicted(), std::uint64_t(capacity));
+}
+
+TEST(ReuseCache, GivesUpWhatIsInViewAndServesNothing) {
+    const auto frames_until_gone = [](int serving, bool in_view) {
+        ReuseCache cache = small_cache(4);
+        cache.start_frame();
+        for (int i = 0; i < 100; ++i) cache.add(0, numbered(cache, 1.0f).data());
+        int frame = 1;
+        for (; frame < 30; ++frame) {
+            cache.start_frame();
+            if (cache.records() == 0) {
+                EXPECT_EQ(cache.evicted(), 100u);
+                EXPECT_EQ(cache.bytes(), 0u);
+                break;
+            }
+            if (serving > 0) cache.mark_used(0, serving);
+            cache.queue_unused(std::vector<std::uint8_t>(4, in_view ? 1 : 0));
+        }
+        return frame;
+    };
+    EXPECT_EQ(frames_until_gone(0, false), 30);  // it may come into view again
+    EXPECT_EQ(frames_until_gone(50, true), 30);
+    EXPECT_EQ(frames_until_gone(1, true), 9);
 }
 
 TEST(ReuseCache, RefusesWhereAllOfItIsInUse) {
@@ -117,7 +140,7 @@ TEST(ReuseCache, RefusesWhereAllOfItIsInUse) {
     for (int i = 0; i < capacity; ++i) EXPECT_TRUE(cache.add(0, numbered(cache, 0.0f).data()));
     EXPECT_FALSE(cache.add(0, numbered(cache, 0.0f).data()));
     cache.start_frame();
-    cache.mark_used(0);
+    cache.mark_used(0, 1);
     cache.queue_unused();
     EXPECT_FALSE(cache.add(0, numbered(cache, 0.0f).data()));
     EXPECT_EQ(cache.records(), std::uint64_t(capacity));

@@ -55,6 +55,8 @@ struct RayId {
 /// Records live in pages of equal size; a page holds records of one instance, born in one frame. A
 /// page is used in a frame in which any of its records serves the picture, and the page that has
 /// not been used for longest is the next to be given away; one that is used in this frame never is.
+/// A page that stays in view and of which next to nothing serves is given up without need: the
+/// frames have other points there (or something in front), and to project it costs time.
 /// Not thread-safe, but for reading, and for set_hidden() of different records.
 class ReuseCache {
 public:
@@ -85,7 +87,10 @@ public:
         int instance = -1;  ///< -1: free
         int size = 0;       ///< records in it
         int born = 0, used = 0;
-        int capacity = 0, floats = 0;  ///< records that fit, and floats of each
+        int serving = 0;  ///< records that serve this frame
+        int idle = 0;     ///< frames in view in which few of its records have served
+        glm::vec3 low{0.0f}, high{0.0f};  ///< bounds of P
+        int capacity = 0, floats = 0;     ///< records that fit, and floats of each
         float* memory = nullptr;
 
         float* record(int index) const noexcept { return memory + index * floats; }
@@ -100,10 +105,15 @@ public:
         m_pages[id.page()].hidden()[id.index()] = hidden ? 1 : 0;
     }
 
-    void mark_used(std::uint32_t page) noexcept { m_pages[page].used = m_frame; }
+    /// So many records of a page serve this frame.
+    void mark_used(std::uint32_t page, int records) noexcept {
+        m_pages[page].used = m_frame;
+        m_pages[page].serving = records;
+    }
     /// After mark_used() of every page that this frame needs: the others are queued to be given
     /// away.
-    void queue_unused();
+    /// @param in_view  by page: whether it was projected; empty: none
+    void queue_unused(const std::vector<std::uint8_t>& in_view = {});
 
     /// Adds a record of this frame. False if there is no page for it.
     /// @param floats  layout(instance).floats() of them
@@ -115,6 +125,7 @@ public:
 
 private:
     int take_page();
+    static constexpr int idle_share = 8, most_idle = 8;
 
     struct Free {
         void operator()(float* memory) const noexcept;
