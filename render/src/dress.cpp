@@ -119,7 +119,7 @@ std::unique_ptr<ReuseCache> make_cache(const Scene& scene, const Options& option
 }
 
 Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
-               const std::vector<int>& frames, const Say& say) {
+               const FrameRange& range, const Say& say) {
     const bool is_used = std::any_of(scene.objects.begin(), scene.objects.end(),
                                      [](const Object& o) { return !o.wears_shader(); });
     put_on(scene, options.shader, options.params);
@@ -154,7 +154,9 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
         wardrobe.chosen.push_back(std::move(shading));
     }
     std::vector<StrategyChoice> choices;
-    if (options.strategy == Strategy::automatic && !frames.empty()) {
+    if (options.strategy == Strategy::automatic) {
+        std::vector<int> frames;
+        for (int i = 0; i < range.count(); ++i) frames.push_back(range.at(i));
         choices = choose_strategies(scene, rays, options, camera, frames, wardrobe.direct,
                                     wardrobe.chosen);
         for (const std::string& line : describe_choices(scene, choices)) say(line);

@@ -47,7 +47,12 @@ ObjectCost& ObjectCost::operator+=(const ObjectCost& other) noexcept {
 }
 
 ReuseCounts& ReuseCounts::operator+=(const ReuseCounts& other) noexcept {
-    seconds += other.seconds;
+    projection_seconds += other.projection_seconds;
+    listing_seconds += other.listing_seconds;
+    keeping_seconds += other.keeping_seconds;
+    insertion_seconds += other.insertion_seconds;
+    slots += other.slots;
+    rays += other.rays;
     hits += other.hits;
     misses += other.misses;
     occluded += other.occluded;
@@ -114,7 +119,7 @@ int FrameRenderer::tile_count() const noexcept {
 void FrameRenderer::Impl::render_and_keep(const FrameContext& frame, int count, ReuseCache& cache,
                                           Film& film, const std::function<void()>& tile_done,
                                           ReuseCounts& counts) {
-    const auto most = std::size_t(4 * tbb::this_task_arena::max_concurrency());
+    const auto most = std::size_t(2 * tbb::this_task_arena::max_concurrency());
     while (buffers.size() < most) buffers.push_back(std::make_unique<NewRecords>());
     int next = 0;
     std::vector<NewRecords*> free;
@@ -147,7 +152,7 @@ void FrameRenderer::Impl::render_and_keep(const FrameContext& frame, int count, 
             ++(cache.add(instance, floats) ? counts.kept : counts.refused);
             floats += cache.layout(instance).floats();
         }
-        counts.seconds += time.seconds();
+        counts.insertion_seconds += time.seconds();
         const std::lock_guard lock(free_mutex);
         free.push_back(tile.found);
     };
@@ -170,10 +175,10 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
     const PinholePose eye = pinhole_pose(my.scene, my.scene.cameras[std::size_t(camera)], pose);
     FrameStatistics statistics;
     if (cache != nullptr) {
-        const Stopwatch projecting;
         if (!my.reprojection) my.reprojection = std::make_unique<Reprojection>(my.settings);
         my.reprojection->start(*cache, eye, instances);
-        statistics.reuse.seconds = projecting.seconds();
+        statistics.reuse.projection_seconds = my.reprojection->seconds();
+        statistics.reuse.slots = my.reprojection->slots();
     }
     const FrameContext context{my.scene,
                                my.rays,
@@ -203,7 +208,8 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
         statistics.reuse.evicted = cache->evicted();
         statistics.reuse.records = cache->records();
         statistics.reuse.bytes = cache->bytes();
-        statistics.reuse.table_bytes = my.reprojection->bytes();
+        statistics.reuse.table_bytes = my.reprojection->bytes() + cache->table_bytes();
+        for (const auto& buffer : my.buffers) statistics.reuse.table_bytes += buffer->bytes();
     }
     statistics.seconds = whole.seconds();
     return statistics;

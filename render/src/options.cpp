@@ -271,6 +271,11 @@ FrameRange frames_of(const Options& options, const Scene& scene) {
     return options.frames ? *options.frames : animated_frames(scene, options.fps);
 }
 
+int window_of(const Options& options, int frame) noexcept {
+    const int from_first = frame - 1;
+    return (from_first >= 0 ? from_first : from_first - options.window + 1) / options.window;
+}
+
 void check_outputs(const Options& options, const FrameRange& frames) {
     for (const FilePattern& output : options.outputs) {
         if (frames.count() > 1 && !output.is_numbered()) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "estara/scenes/program.h"
 #include "estara/shaders/wide.h"
 
 namespace estara {
@@ -19,13 +20,16 @@ void keep_smallest(std::uint64_t& at, std::uint64_t value) noexcept {
     }
 }
 
-template <class F>
-void in_parallel(std::size_t count, std::size_t grain, const F& f) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                      [&](const auto& range) { f(range.begin(), range.end()); });
-}
-
 }  // namespace
+
+template <class F>
+void Reprojection::in_parallel(std::size_t count, std::size_t grain, const F& f) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+        const Stopwatch time;
+        f(range.begin(), range.end());
+        m_seconds += time.seconds();
+    });
+}
 
 Reprojection::Reprojection(const FrameSettings& settings)
     : m_width(settings.width),
@@ -38,6 +42,7 @@ Reprojection::Reprojection(const FrameSettings& settings)
 void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
                          std::span<const PosedInstance> instances) {
     m_cache = &cache;
+    m_seconds = 0.0;
     cache.start_frame();
     in_parallel(m_slots, 1u << 16, [&](std::size_t first, std::size_t last) {
         std::fill(m_claims.get() + first, m_claims.get() + last, ~std::uint64_t{0});
@@ -79,7 +84,7 @@ bool Reprojection::may_be_seen(const PinholePose& pose, const PosedInstance& ins
 
 /// How many points of each page have won a sample.
 void Reprojection::count_serving() {
-    std::vector<int> serving(m_in_view.size(), 0);
+    std::vector<int> serving(m_in_view.size(), 0), looked_at(m_in_view.size(), 0);
     in_parallel(m_slots, 1u << 14, [&](std::size_t first, std::size_t last) {
         std::uint32_t current = ~0u;
         int run = 0;  // neighbours are mostly of one page
@@ -91,6 +96,10 @@ void Reprojection::count_serving() {
             RayId id;
             id.bits = m_claims[s] & ~hidden;
             if (id.bits == none) continue;
+            if ((m_claims[s] & hidden) != 0) {  // looked at, but of little hope
+                std::atomic_ref(looked_at[id.page()]).store(1, std::memory_order_relaxed);
+                continue;
+            }
             if (id.page() != current) {
                 add();
                 current = id.page();
@@ -101,7 +110,7 @@ void Reprojection::count_serving() {
         add();
     });
     for (std::size_t p = 0; p < serving.size(); ++p) {
-        if (serving[p] > 0) m_cache->mark_used(std::uint32_t(p), serving[p]);
+        if (serving[p] + looked_at[p] > 0) m_cache->mark_used(std::uint32_t(p), serving[p]);
     }
 }
 

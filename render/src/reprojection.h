@@ -1,6 +1,7 @@
 // Which hit points of earlier frames stand in for the samples of this one.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -19,6 +20,9 @@ struct NewRecords {
     std::vector<int> instances;
     std::vector<float> floats;  ///< of one point after the other, as its RecordLayout says
 
+    std::size_t bytes() const noexcept {
+        return instances.capacity() * sizeof(int) + floats.capacity() * sizeof(float);
+    }
     void clear() noexcept {
         instances.clear();
         floats.clear();
@@ -57,6 +61,9 @@ public:
 
     ReuseCache& cache() const noexcept { return *m_cache; }
     std::uint64_t bytes() const noexcept { return m_slots * sizeof(std::uint64_t); }
+    std::uint64_t slots() const noexcept { return m_slots; }
+    /// Of the last start(), summed over threads.
+    double seconds() const noexcept { return m_seconds; }
 
 private:
     static constexpr std::uint64_t hidden = std::uint64_t{1} << 63, none = hidden - 1;
@@ -75,7 +82,11 @@ private:
     SampleStrata m_strata;
     std::size_t m_slots;
     std::unique_ptr<std::uint64_t[]> m_claims;  ///< by slot: the winner's id, above it hidden
-    std::vector<std::uint8_t> m_in_view;        ///< by page
+    template <class F>
+    void in_parallel(std::size_t count, std::size_t grain, const F& f);
+
+    std::atomic<double> m_seconds = 0.0;
+    std::vector<std::uint8_t> m_in_view;  ///< by page
     ReuseCache* m_cache = nullptr;
 };
 

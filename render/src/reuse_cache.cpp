@@ -37,6 +37,12 @@ ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
                     ExitStatus::failed);
     }
     m_pages.resize(pages);
+    for (const RecordLayout& layout : m_layouts) {
+        if (std::size_t(layout.floats()) * sizeof(float) > page_bytes / 2) {
+            throw Error(fmt::format("a record of {} lights does not fit a page of the cache",
+                                    layout.lights));
+        }
+    }
     for (std::size_t p = 0; p < pages; ++p) {
         m_pages[p].memory = m_memory.get() + p * (page_bytes / sizeof(float));
     }
@@ -44,12 +50,9 @@ ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
 }
 
 void ReuseCache::clear() {
-    m_free.resize(m_pages.size());
-    for (std::size_t p = 0; p < m_pages.size(); ++p) {
-        m_pages[p].instance = -1;
-        m_pages[p].size = 0;
-        m_free[p] = int(m_pages.size() - 1 - p);
-    }
+    for (int p = 0; p < m_touched; ++p) m_pages[std::size_t(p)].instance = -1;
+    m_touched = 0;
+    m_free.clear();
     m_unused.clear();
     m_open.assign(m_objects.size(), -1);
     m_frame = -1;
@@ -59,15 +62,15 @@ void ReuseCache::clear() {
 void ReuseCache::start_frame() {
     ++m_frame;
     m_evicted = 0;
-    for (std::size_t p = 0; p < m_pages.size(); ++p) {
-        Page& page = m_pages[p];
+    for (int p = 0; p < m_touched; ++p) {
+        Page& page = m_pages[std::size_t(p)];
         page.serving = 0;
         if (page.instance < 0 || page.idle < most_idle) continue;
         m_records -= std::uint64_t(page.size);
         m_evicted += std::uint64_t(page.size);
         --m_in_use;
         page.instance = -1;
-        m_free.push_back(int(p));
+        m_free.push_back(p);
     }
     m_open.assign(m_objects.size(), -1);
     m_unused.clear();
@@ -95,6 +98,10 @@ int ReuseCache::take_page() {
         m_free.pop_back();
         ++m_in_use;
         return p;
+    }
+    if (std::size_t(m_touched) < m_pages.size()) {
+        ++m_in_use;
+        return m_touched++;
     }
     if (m_unused.empty()) return -1;
     const int p = m_unused.front();

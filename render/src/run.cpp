@@ -25,12 +25,6 @@ bool is_finished(const Options& options, int frame) {
     });
 }
 
-/// The number of the window that a frame is in (Options::window).
-int window_of(const Options& options, int frame) {
-    const int from_first = frame - 1;
-    return (from_first >= 0 ? from_first : from_first - options.window + 1) / options.window;
-}
-
 /// With --resume, those that are not finished; of a strategy that may use the cache whole windows,
 /// because a frame's hit points are those of the frames before it.
 std::vector<int> frames_to_render(const Options& options, const FrameRange& range) {
@@ -164,7 +158,7 @@ RunRecord run(const Options& options, Scene scene, const Say& say) {
 
     if (!frames.empty()) {
         RayScene rays(scene);
-        const Wardrobe wardrobe = dress(scene, rays, options, camera, frames, say);
+        const Wardrobe wardrobe = dress(scene, rays, options, camera, record.range, say);
         record.objects = wardrobe.records;
         record.frames = Animation(options, scene, rays, wardrobe, camera).render(frames);
     }

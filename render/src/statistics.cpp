@@ -30,10 +30,22 @@ Json json_of(const ImageError& e) {
 }
 
 Json json_of(const ReuseCounts& r) {
-    return {{"seconds", r.seconds},   {"hits", r.hits},       {"misses", r.misses},
-            {"occluded", r.occluded}, {"turned", r.turned},   {"refilled", r.refilled},
-            {"kept", r.kept},         {"refused", r.refused}, {"evicted", r.evicted},
-            {"records", r.records},   {"bytes", r.bytes},     {"table_bytes", r.table_bytes}};
+    return {{"projection_seconds", r.projection_seconds},
+            {"listing_seconds", r.listing_seconds},
+            {"keeping_seconds", r.keeping_seconds},
+            {"insertion_seconds", r.insertion_seconds},
+            {"rays", r.rays},
+            {"hits", r.hits},
+            {"misses", r.misses},
+            {"occluded", r.occluded},
+            {"turned", r.turned},
+            {"refilled", r.refilled},
+            {"kept", r.kept},
+            {"refused", r.refused},
+            {"evicted", r.evicted},
+            {"records", r.records},
+            {"bytes", r.bytes},
+            {"table_bytes", r.table_bytes}};
 }
 
 Json json_of(const FrameStatistics& s) {
@@ -113,6 +125,7 @@ Json settings_json(const RunRecord& run) {
               {"strategy", to_string(o.strategy)},
               {"cache_memory", o.cache_memory},
               {"window", o.window},
+              {"cache_light", o.cache_light ? Json(*o.cache_light) : Json("auto")},
               {"frames",
                {{"first", run.range.first}, {"last", run.range.last}, {"step", run.range.step}}},
               {"fps", o.fps},
@@ -162,7 +175,7 @@ namespace {
 /// All but rays to the eye.
 double shading_seconds(const FrameStatistics& s) {
     return s.evaluation_seconds + s.light_seconds + s.view_seconds + s.shadow_seconds +
-           s.reuse.seconds;
+           s.reuse.seconds();
 }
 
 /// What auto has promised for all objects together, or 0.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
 
 namespace estara {
 namespace {
@@ -26,8 +28,11 @@ public:
     Trials(const Scene& scene, RayScene& rays, const Options& options, int camera)
         : m_scene(scene), m_options(options), m_camera(camera), m_settings(options.frame) {
         m_settings.aovs = {};
+        const int columns = (m_settings.width - 1) / 32 + 1;  // a tile's width
         m_settings.tile_step =
             std::max(1, FrameRenderer(scene, rays, m_settings).tile_count() / tiles_measured);
+        // Else the tiles would all lie below one another.
+        while (std::gcd(m_settings.tile_step, columns) != 1) ++m_settings.tile_step;
         m_renderer = std::make_unique<FrameRenderer>(scene, rays, m_settings);
     }
 
@@ -57,6 +62,13 @@ private:
 
 ObjectCost cost_of(const FrameStatistics& statistics, std::size_t object) {
     return object < statistics.objects.size() ? statistics.objects[object] : ObjectCost{};
+}
+
+/// How many of the frames a window has, on average.
+double frames_together(const Options& options, const std::vector<int>& frames) {
+    std::set<int> windows;
+    for (const int frame : frames) windows.insert(window_of(options, frame));
+    return windows.empty() ? 0.0 : double(frames.size()) / double(windows.size());
 }
 
 /// What a sample of an object costs by each strategy.
@@ -89,9 +101,12 @@ StrategyChoice weigh(const Trial& trial, std::size_t o, bool has_grid, bool keep
         choice.chosen = Strategy::grid;
     }
     if (!may_cache || cache.recalled == 0) return choice;
-    const double shared = per(trial.cache.reuse.seconds, trial.cache.samples);
-    t.save = per(cache.keep, cache.kept) + shared;
-    t.extract = per(cache.recall, cache.recalled) + shared;
+    // Reprojection is of all points and slots, the samples are of some tiles.
+    const double projecting = per(trial.cache.reuse.projection_seconds, trial.cache.reuse.slots);
+    t.save = per(cache.keep, cache.kept) +
+             per(trial.cache.reuse.insertion_seconds, trial.cache.reuse.kept);
+    t.extract = per(cache.recall, cache.recalled) +
+                per(trial.cache.reuse.listing_seconds, trial.cache.reuse.hits) + projecting;
     const double recalled = double(cache.recalled) / double(cache.recalled + cache.evaluated);
     choice.frames = recalled < 1.0 ? std::min(window, 1.0 / (1.0 - recalled)) : window;
     choice.speedup = predicted_speedup(t, choice.frames);
@@ -110,7 +125,8 @@ std::vector<StrategyChoice> choose_strategies(const Scene& scene, RayScene& rays
                                               const std::vector<int>& frames,
                                               const std::vector<ObjectShading>& direct,
                                               const std::vector<ObjectShading>& gridded) {
-    const bool may_cache = frames.size() > 1 && options.window > 1;
+    const double together = frames_together(options, frames);
+    const bool may_cache = together > 1.0;
     const bool any_grid = std::any_of(gridded.begin(), gridded.end(),
                                       [](const ObjectShading& s) { return bool(s.pyramid); });
     if (!may_cache && !any_grid) return {};
@@ -126,11 +142,10 @@ std::vector<StrategyChoice> choose_strategies(const Scene& scene, RayScene& rays
         const std::unique_ptr<ReuseCache> cache = make_cache(scene, options, cached);
         trial.cache = trials.measure(cached, first, second, cache.get());
     }
-    const double window = std::min(double(options.window), double(frames.size()));
     const bool light = keeps_light(scene, options);
     std::vector<StrategyChoice> choices;
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-        choices.push_back(weigh(trial, o, bool(gridded[o].pyramid), light, may_cache, window));
+        choices.push_back(weigh(trial, o, bool(gridded[o].pyramid), light, may_cache, together));
     }
     return choices;
 }

@@ -13,11 +13,16 @@ void TileRenderer::recall(const FrameContext& frame, int sample) {
     const Stopwatch time;
     list_candidates(frame, sample);
     aim_at_candidates(frame);
-    statistics.evaluation_seconds += time.seconds();
+    double listing = time.seconds();
     const Stopwatch rays;
     frame.rays.occluded(m_rays, m_blocked.data());
     statistics.ray_seconds += rays.seconds();
+    statistics.reuse.rays += std::uint64_t(m_candidate_count);
+    const Stopwatch taking;
     take_visible(frame);
+    listing += taking.seconds();
+    statistics.evaluation_seconds += listing;
+    statistics.reuse.listing_seconds += listing;
 }
 
 void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
@@ -109,8 +114,10 @@ void TileRenderer::take_visible(const FrameContext& frame) {
         for (int c = group.first; c < group.last; ++c) {
             const int pixel = m_candidates.pixel[c];
             const bool usable = m_candidates.usable[c] != 0, blocked = m_blocked[std::size_t(c)];
-            if (usable && blocked != (m_candidates.was_hidden[c] != 0)) {
-                cache.set_hidden(m_candidates.id[c], blocked);
+            // From the wrong side it is of as little use: both yield to others next time.
+            const bool hidden = blocked || !usable;
+            if (hidden != (m_candidates.was_hidden[c] != 0)) {
+                cache.set_hidden(m_candidates.id[c], hidden);
             }
             if (usable && !blocked) {
                 m_candidate_order[taken++] = c;
@@ -203,7 +210,7 @@ void TileRenderer::keep(const FrameContext& frame, const Group& group, NewRecord
         }
     }
     const double seconds = time.seconds();
-    statistics.reuse.seconds += seconds;
+    statistics.reuse.keeping_seconds += seconds;
     ObjectCost& cost = cost_of(frame, group);
     cost.keep += seconds;
     cost.kept += std::uint64_t(group.last - group.first);

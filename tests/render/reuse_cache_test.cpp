@@ -124,7 +124,7 @@ TEST(ReuseCache, GivesUpWhatIsInViewAndServesNothing) {
                 break;
             }
             if (serving > 0) cache.mark_used(0, serving);
-            cache.queue_unused(std::vector<std::uint8_t>(4, in_view ? 1 : 0));
+            cache.queue_unused(std::vector<std::uint8_t>(1, in_view ? 1 : 0));
         }
         return frame;
     };

@@ -61,9 +61,9 @@ void put_on(Scene& scene, const std::string& shader, const std::vector<Setting>&
 /// then have the same octaves. Without one it is direct_filter_widths(). `say` is told what stays
 /// without a grid, and the warnings of match_grids().
 /// @param camera  index into Scene::cameras
-/// @param frames  that will be rendered
+/// @param range   all that are asked for: what --resume finds done must not change the choice
 Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
-               const std::vector<int>& frames, const Say& say);
+               const FrameRange& range, const Say& say);
 
 /// Half the smallest footprint of a pixel on each object, at least 1/16384 of the object's
 /// diagonal; 1/512 of the diagonal for an object that is never seen. Object space, by object.

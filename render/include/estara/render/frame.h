@@ -40,18 +40,28 @@ struct FrameSettings {
 /// What a frame has done with the cache. Each sample of a frame is a hit, or a ray is traced for
 /// it.
 struct ReuseCounts {
-    double seconds = 0.0;           ///< reprojection, and taking new points into the cache
-    std::uint64_t hits = 0;         ///< samples that a kept point stands in for
-    std::uint64_t misses = 0;       ///< samples without a point
-    std::uint64_t occluded = 0;     ///< with one that something hides
-    std::uint64_t turned = 0;       ///< with one that is seen from its other side
-    std::uint64_t refilled = 0;     ///< rays traced instead: misses, occluded and turned
-    std::uint64_t kept = 0;         ///< points taken into the cache
-    std::uint64_t refused = 0;      ///< points for which all of it was in use
-    std::uint64_t evicted = 0;      ///< points that made room, the least recently used
-    std::uint64_t records = 0;      ///< in the cache after the frame
-    std::uint64_t bytes = 0;        ///< of its pages in use, after the frame
-    std::uint64_t table_bytes = 0;  ///< of the table of which point is for which sample
+    double projection_seconds = 0.0;  ///< of all points, summed over threads
+    double listing_seconds = 0.0;     ///< finding and testing candidates, without rays, likewise
+    double keeping_seconds = 0.0;     ///< making records, likewise
+    double insertion_seconds = 0.0;   ///< taking them into the cache, one thread
+    std::uint64_t slots = 0;          ///< samples of the whole image
+    std::uint64_t rays = 0;           ///< from candidates to the eye
+    std::uint64_t hits = 0;           ///< samples that a kept point stands in for
+    std::uint64_t misses = 0;         ///< samples without a point
+    std::uint64_t occluded = 0;       ///< with one that something hides
+    std::uint64_t turned = 0;         ///< with one that is seen from its other side
+    std::uint64_t refilled = 0;       ///< rays traced instead: misses, occluded and turned
+    std::uint64_t kept = 0;           ///< points taken into the cache
+    std::uint64_t refused = 0;        ///< points for which all of it was in use
+    std::uint64_t evicted = 0;        ///< points that made room, the least recently used
+    std::uint64_t records = 0;        ///< in the cache after the frame
+    std::uint64_t bytes = 0;          ///< of its pages in use, after the frame
+    std::uint64_t table_bytes = 0;    ///< beside them: which point is for which sample, new records
+
+    /// Without finding candidates, which is part of the evaluation.
+    double seconds() const noexcept {
+        return projection_seconds + keeping_seconds + insertion_seconds;
+    }
 
     ReuseCounts& operator+=(const ReuseCounts& other) noexcept;
 };

@@ -50,6 +50,9 @@ Options parse_options(int argc, const char* const* argv, std::string& help);
 /// The frames to render: --frames or the whole animation.
 FrameRange frames_of(const Options& options, const Scene& scene);
 
+/// The number of the window that a frame is in (Options::window).
+int window_of(const Options& options, int frame) noexcept;
+
 /// Errors that show only with the scene at hand: several frames under one name.
 void check_outputs(const Options& options, const FrameRange& frames);
 

@@ -97,7 +97,8 @@ public:
         float* P(int c) const noexcept { return record(capacity) + c * capacity; }
         std::uint8_t* hidden() const noexcept { return reinterpret_cast<std::uint8_t*>(P(3)); }
     };
-    int page_count() const noexcept { return int(m_pages.size()); }
+    /// Pages that have been in use since clear(); no other has a higher number.
+    int page_count() const noexcept { return m_touched; }
     const Page& page(std::uint32_t p) const noexcept { return m_pages[p]; }
 
     /// Notes whether something is in front of the point.
@@ -119,6 +120,8 @@ public:
     /// @param floats  layout(instance).floats() of them
     bool add(int instance, const float* floats);
 
+    /// Of what tells of pages, beside them.
+    std::uint64_t table_bytes() const noexcept { return m_pages.size() * sizeof(Page); }
     std::uint64_t records() const noexcept { return m_records; }
     std::uint64_t evicted() const noexcept { return m_evicted; }            ///< in this frame
     std::uint64_t bytes() const noexcept { return m_in_use * page_bytes; }  ///< of pages in use
@@ -134,7 +137,8 @@ private:
     std::vector<int> m_objects;
     std::unique_ptr<float, Free> m_memory;
     std::vector<Page> m_pages;
-    std::vector<int> m_free;   ///< pages, the next one last
+    int m_touched = 0;
+    std::vector<int> m_free;   ///< pages below m_touched, the next one last
     std::deque<int> m_unused;  ///< pages that may be given away, the oldest first
     std::vector<int> m_open;   ///< by instance: page of this frame with room, or -1
     int m_frame = -1;
