@@ -231,6 +231,59 @@ TEST(Reuse, TakesASheetFromItsOtherSideForWhatItIs) {
     EXPECT_LT(compare_films(back, reused.direct()).max, 1e-6);
 }
 
+TEST(Reuse, GoesAroundASolidWithoutLosingItsPoints) {
+    Scene scene = scene_of({object("ball", sphere(1.0f, 48), "wood", {{"ringscale", {3.0f}}})});
+    add_sun(scene, glm::quat(glm::vec3(-0.6f, 0.4f, 0.0f)));
+    Reused reused(scene);
+    for (int frame = 0; frame < 150; ++frame) {  // three degrees a frame
+        const glm::quat turn(glm::vec3(0.0f, 3.14159265f * float(frame) / 60.0f, 0.0f));
+        scene.nodes[1].rotation = turn;
+        scene.nodes[1].translation = turn * glm::vec3(0.0f, 0.0f, 4.0f);
+        reused.render();
+        // Points of the far side are in the silhouette too, and older than those of the near one.
+        if (frame > 0) {
+            EXPECT_GT(double(reused.cost.reuse.hits), 0.6 * double(reused.cost.samples)) << frame;
+        }
+    }
+}
+
+TEST(Reuse, TakesPointsOnTheBorderOfTheImageAndAtTheEye) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, true, 16);
+    reused.render();
+    // Right up to the ball's front, through it and out of it again: z of its points comes to 0.
+    for (const float z : {1.5f, 1.001f, 1.0f, 0.999f, 0.5f, 4.0f}) {
+        scene.nodes[1].translation.z = z;
+        const Film film = reused.render();
+        expect_all_samples(reused);
+        EXPECT_EQ(reused.cost.bad_pixels, 0u);
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.03) << z;
+    }
+}
+
+/// README, "Same filter": outlines grow against what is not kept.
+TEST(Reuse, GrowsAnOutlineByLessThanARectangle) {
+    for (const int spp : {1, 4, 16}) {
+        Scene scene = scene_of({object("ball", sphere(1.0f, 48))});
+        Reused reused(scene, 1u << 26, true, spp);
+        double grown = 0.0;
+        for (int frame = 0; frame < 12; ++frame) {
+            scene.nodes[1].translation = {0.013f * float(frame), 0.007f * float(frame), 4.0f};
+            const Film film = reused.render(), direct = reused.direct();
+            double covered = 0.0, expected = 0.0;
+            for (std::size_t i = 0; i < film.color.size(); ++i) {
+                covered += double(film.color[i].a);
+                expected += double(direct.color[i].a);
+            }
+            const double radius = std::sqrt(expected / 3.14159265);
+            grown = covered / (2.0 * 3.14159265 * radius) - radius / 2.0;  // pixels, outwards
+        }
+        RecordProperty("grown_at_" + std::to_string(spp), std::to_string(grown));
+        EXPECT_LT(grown, 0.5 / std::sqrt(double(spp))) << spp;
+        EXPECT_GT(grown, -0.1 / std::sqrt(double(spp))) << spp;
+    }
+}
+
 TEST(Reuse, FollowsMovingObjectsAndWhatTheyHide) {
     Scene scene = room();
     Reused reused(scene, 1u << 26, false, 16);  // light changes: shadows move

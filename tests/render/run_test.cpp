@@ -140,6 +140,17 @@ TEST(Run, GivesTheSamePicturesWindowByWindow) {
     EXPECT_EQ(test::text_of(folder / "part4.exr"), test::text_of(folder / "whole4.exr"));
 }
 
+TEST(Run, TakesAWindowLongerThanTheAnimation) {
+    const Folder folder;
+    Options options = small(folder / "#.exr");
+    options.frames = {1, 3, 1};
+    options.strategy = Strategy::cache;
+    options.window = 1000000;
+    const RunRecord record = run_quietly(options);
+    ASSERT_EQ(record.frames.size(), 3u);
+    EXPECT_EQ(record.frames[2].cost.reuse.hits, record.frames[2].cost.samples);  // all stands still
+}
+
 TEST(Run, ChoosesByMeasurementAndSaysWhy) {
     const Folder folder;
     Options options = small(folder / "#.exr");
