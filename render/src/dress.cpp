@@ -108,9 +108,7 @@ std::unique_ptr<ReuseCache> make_cache(const Scene& scene, const Options& option
     const int lights = keeps_light(scene, options) ? int(scene.lights.size()) : -1;
     std::vector<RecordLayout> layouts;
     for (const ObjectShading& one : shading) {
-        const ShaderInfo& info = one.shader->info();
-        const bool has_normal = info.channels.back().kind == ChannelKind::normal;
-        layouts.push_back({info.baked_floats - (has_normal ? 3 : 0), lights});
+        layouts.push_back(record_layout(one.shader->info(), lights));
     }
     std::vector<int> objects;
     for (const Instance& instance : scene.instances) objects.push_back(instance.object);

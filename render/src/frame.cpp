@@ -76,7 +76,7 @@ struct FrameRenderer::Impl {
     std::vector<std::vector<glm::vec3>> tangents;      ///< by object, of those that wear dPdu
     tbb::enumerable_thread_specific<TileRenderer> tiles;
     std::unique_ptr<Reprojection> reprojection;        ///< once a cache is used
-    std::vector<std::unique_ptr<NewRecords>> buffers;  ///< not in use
+    std::vector<std::unique_ptr<NewRecords>> buffers;  ///< what tiles have found, on its way
 
     /// @param number  of [0, tile_count())
     void render_tile(const FrameContext& frame, int number, Film& film, NewRecords& found) {
@@ -88,8 +88,8 @@ struct FrameRenderer::Impl {
     void render_and_keep(const FrameContext& frame, int count, ReuseCache& cache, Film& film,
                          const std::function<void()>& tile_done, ReuseCounts& counts);
 
-    int columns() const { return (settings.width - 1) / TileRenderer::width + 1; }
-    int rows() const { return (settings.height - 1) / TileRenderer::height + 1; }
+    int columns() const { return TileRenderer::columns(settings.width); }
+    int rows() const { return TileRenderer::rows(settings.height); }
 };
 
 FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSettings& settings)

@@ -73,6 +73,9 @@ private:
                    std::size_t(m_width) +
                std::size_t(x);
     }
+    /// f(first, last) on parts of [0, count), timed.
+    template <class F>
+    void in_parallel(std::size_t count, std::size_t grain, const F& f);
     bool may_be_seen(const PinholePose& pose, const PosedInstance& instance,
                      const ReuseCache::Page& page) const noexcept;
     void claim(const PinholePose& pose, const PosedInstance& instance, int page) noexcept;
@@ -82,9 +85,6 @@ private:
     SampleStrata m_strata;
     std::size_t m_slots;
     std::unique_ptr<std::uint64_t[]> m_claims;  ///< by slot: the winner's id, above it hidden
-    template <class F>
-    void in_parallel(std::size_t count, std::size_t grain, const F& f);
-
     std::atomic<double> m_seconds = 0.0;
     std::vector<std::uint8_t> m_in_view;  ///< by page
     ReuseCache* m_cache = nullptr;

@@ -15,6 +15,17 @@
 
 namespace estara {
 
+int normal_plane(const ShaderInfo& info) noexcept {
+    const bool last_is_normal =
+        !info.channels.empty() && info.channels.back().kind == ChannelKind::normal;
+    return last_is_normal ? info.baked_floats - 3 : -1;
+}
+
+RecordLayout record_layout(const ShaderInfo& info, int lights) noexcept {
+    const int normal = normal_plane(info);
+    return {normal < 0 ? info.baked_floats : normal, lights};
+}
+
 void ReuseCache::Free::operator()(float* memory) const noexcept { std::free(memory); }
 
 ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
@@ -31,11 +42,11 @@ ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
     constexpr std::size_t huge = std::size_t{2} << 20;
     const std::size_t rounded = (pages * page_bytes + huge - 1) / huge * huge;
     m_memory.reset(static_cast<float*>(std::aligned_alloc(huge, rounded)));
-    if (m_memory) madvise(m_memory.get(), rounded, MADV_HUGEPAGE);
     if (!m_memory) {
         throw Error(fmt::format("--cache-memory: {} cannot be had", format_bytes(bytes)),
                     ExitStatus::failed);
     }
+    madvise(m_memory.get(), rounded, MADV_HUGEPAGE);
     m_pages.resize(pages);
     for (const RecordLayout& layout : m_layouts) {
         if (std::size_t(layout.floats()) * sizeof(float) > page_bytes / 2) {

@@ -8,11 +8,12 @@
 #include <numeric>
 #include <set>
 
+#include "tile.h"
+
 namespace estara {
 namespace {
 
 constexpr int tiles_measured = 48;
-constexpr double least_gain = 1.0 + 1.0 / 30.0;
 
 /// a / b, 0 where there is nothing to divide by.
 double per(double a, std::uint64_t b) noexcept { return b > 0 ? a / double(b) : 0.0; }
@@ -28,9 +29,9 @@ public:
     Trials(const Scene& scene, RayScene& rays, const Options& options, int camera)
         : m_scene(scene), m_options(options), m_camera(camera), m_settings(options.frame) {
         m_settings.aovs = {};
-        const int columns = (m_settings.width - 1) / 32 + 1;  // a tile's width
-        m_settings.tile_step =
-            std::max(1, FrameRenderer(scene, rays, m_settings).tile_count() / tiles_measured);
+        const int columns = TileRenderer::columns(m_settings.width),
+                  rows = TileRenderer::rows(m_settings.height);
+        m_settings.tile_step = std::max(1, columns * rows / tiles_measured);
         // Else the tiles would all lie below one another.
         while (std::gcd(m_settings.tile_step, columns) != 1) ++m_settings.tile_step;
         m_renderer = std::make_unique<FrameRenderer>(scene, rays, m_settings);
@@ -174,7 +175,7 @@ std::vector<std::string> describe_choices(const Scene& scene,
         }
         mean = {mean.vi / weight, mean.vd / weight, mean.save / weight, mean.extract / weight};
         frames /= weight;
-        std::string line = fmt::format("{}: {}: {}", "auto", key.first, to_string(key.second));
+        std::string line = fmt::format("auto: {}: {}", key.first, to_string(key.second));
         if (group.size() > 1) line += fmt::format(" for {} objects", group.size());
         line += fmt::format("; a sample takes {:.0f} ns + {:.0f} ns that depend on the view",
                             1e9 * mean.vi, 1e9 * mean.vd);
@@ -182,8 +183,7 @@ std::vector<std::string> describe_choices(const Scene& scene,
         if (mean.extract > 0.0) {
             line += fmt::format(
                 ", recalled {:.0f} ns, saved {:.0f} ns: over {:.3g} frames reuse is {:.2f} times "
-                "as "
-                "fast (pays from {:.2g} on, tends to {:.2f})",
+                "as fast (pays from {:.2g} on, tends to {:.2f})",
                 1e9 * mean.extract, 1e9 * mean.save, frames, predicted_speedup(mean, frames),
                 break_even(mean), limit_of_speedup(mean));
         }

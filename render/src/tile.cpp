@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estara/grids/irradiance.h"
 #include "estara/scenes/program.h"
 
 namespace estara {
 namespace {
-
-/// A highlight below this, in the units of the picture (1 is white), is taken as it is, in shadow
-/// or not: a light's error is at most this, a quarter of an 8-bit picture's darkest step.
-constexpr float negligible_gloss = 0x1p-14f;
 
 /// v / |v|, or `otherwise` for a vector without direction.
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
@@ -58,7 +53,7 @@ void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, F
         m_samples.surface.size = m_count;
         statistics.samples += std::uint64_t(m_count);
         if (m_count == 0) continue;
-        m_sides.assign((frame.lights.size() / 32 + 1) * capacity, 0);
+        if (frame.reuse != nullptr) m_sides.assign((frame.lights.size() / 32 + 1) * capacity, 0);
         for (const Group& group : m_groups) {
             if (group.recalled) {
                 shade_recalled(frame, group);
@@ -296,10 +291,10 @@ void TileRenderer::reserve_planes(const ShaderInfo& info) {
 
 /// A shader's own normal takes the place of the mesh's.
 void TileRenderer::take_normals(const FrameContext& frame, const Group& group) {
-    const ShaderInfo& info = shading_of(frame, group).shader->info();
-    if (info.channels.empty() || info.channels.back().kind != ChannelKind::normal) return;
+    const int plane = normal_plane(shading_of(frame, group).shader->info());
+    if (plane < 0) return;
     for (int c = 0; c < 3; ++c) {
-        const float* const from = m_planes.data() + (info.baked_floats - 3 + c) * capacity;
+        const float* const from = m_planes.data() + (plane + c) * capacity;
         std::copy(from + group.first, from + group.last, m_samples.surface.N[c] + group.first);
     }
 }
@@ -390,173 +385,6 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
             m_planes[std::size_t(k * capacity + m_missed[m])] =
                 m_missed_planes[std::size_t(k * capacity) + m];
         }
-    }
-}
-
-/// Starts E: what is baked, or nothing yet. Baked is the front of the surface, outside of shadow
-/// edges.
-void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& group) {
-    SeenBatch& seen = m_samples.seen;
-    for (int c = 0; c < 3; ++c) std::fill(seen.E[c] + group.first, seen.E[c] + group.last, 0.0f);
-    std::fill(m_samples.baked_E + group.first, m_samples.baked_E + group.last, 0);
-    const ObjectShading& shading = shading_of(frame, group);
-    if (!shading.irradiance) return;
-    const Stopwatch time;
-    m_irradiance.resize(4 * capacity);
-    find_footprints(frame, group);
-    shading.irradiance->lookup(m_P, m_footprints, m_irradiance.data(), capacity, m_found.data());
-    for (int j = group.first; j < group.last; ++j) {
-        const auto i = std::size_t(j - group.first);
-        const bool baked = m_found[i] && m_samples.front[j] &&
-                           m_irradiance[3 * capacity + i] <= irradiance_mask_limit;
-        if (!baked) continue;
-        m_samples.baked_E[j] = 1;
-        for (std::size_t c = 0; c < 3; ++c) seen.E[c][j] = m_irradiance[c * capacity + i];
-    }
-    statistics.irradiance_lookups += std::uint64_t(group.last - group.first);
-    statistics.evaluation_seconds += time.seconds();
-}
-
-/// Adds what one light sends to the eye from every sample.
-void TileRenderer::light(const FrameContext& frame, int number) {
-    const PosedLight& light = frame.lights[std::size_t(number)];
-    const Stopwatch time;
-    for (const Group& group : m_groups) {
-        // Of a point whose light is kept only highlights are asked for.
-        const bool kept =
-            group.recalled && frame.reuse->cache().layout(int(group.instance)).is_lit();
-        if (kept && !shading_of(frame, group).shader->glossy()) continue;
-        reach_samples(frame, group, light);
-    }
-    statistics.light_seconds += time.seconds();
-    view(frame, true, m_reach.gloss);
-    if (light.shadow && frame.settings.shadows) {
-        want_shadows(frame);
-        trace_shadows(frame, light);
-    } else {
-        std::fill_n(m_reach.visible, m_count, 1);
-    }
-    const Stopwatch sum;
-    if (frame.reuse != nullptr) recall_visibility(number);
-    add_light();
-    statistics.light_seconds += sum.seconds();
-}
-
-/// Recalled samples are told whether the light is visible, the others tell.
-void TileRenderer::recall_visibility(int light) {
-    const int place = light + 1;  // the first bit is the side of the point itself
-    std::uint32_t* const words = m_sides.data() + place / 32 * capacity;
-    wide([=, samples = &m_samples, reach = &m_reach, count = m_count, bit = place % 32]()
-             ESTARA_LOOP {
-#pragma GCC ivdep
-                 for (int j = 0; j < count; ++j) {
-                     const int recalled = int(words[j] >> bit & 1u);
-                     const int visible = samples->kept[j] != 0 ? recalled : reach->visible[j];
-                     reach->visible[j] = visible;
-                     words[j] |= std::uint32_t(visible) << bit;
-                 }
-             });
-}
-
-void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
-                                 const PosedLight& light) {
-    const bool shadow = light.shadow && frame.settings.shadows;
-    wide([samples = &m_samples, reach = &m_reach, group, light, shadow,
-          offset = frame.instances[group.instance].offset]() ESTARA_LOOP {
-#pragma GCC ivdep
-        for (int j = group.first; j < group.last; ++j) {
-            const LightSample sample = sample_light(light, at(samples->P, j));
-            const float cosine = glm::dot(at(samples->seen.N, j), sample.L);
-            const bool faces = cosine > 0.0f;
-            put(samples->seen.L, j, sample.L);
-            put(samples->seen.Cl, j,
-                {faces ? sample.Cl.x : 0.0f, faces ? sample.Cl.y : 0.0f,
-                 faces ? sample.Cl.z : 0.0f});
-            reach->cosine[j] = faces ? cosine : 0.0f;
-        }
-        if (!shadow) return;
-#pragma GCC ivdep
-        for (int j = group.first; j < group.last; ++j) {
-            const glm::vec3 L = at(samples->seen.L, j), Ng = at(samples->Ng, j);
-            const float side = glm::dot(Ng, L) < 0.0f ? -1.0f : 1.0f;
-            put(reach->origin, j,
-                offset.from(at(samples->P, j), side * Ng, at(samples->surface.P, j)));
-        }
-    });
-}
-
-void TileRenderer::want_shadows(const FrameContext& frame) {
-    const float least = negligible_gloss / std::exp2(frame.settings.exposure);
-    wide([samples = &m_samples, reach = &m_reach, count = m_count, least]() ESTARA_LOOP {
-#pragma GCC ivdep
-        for (int j = 0; j < count; ++j) {
-            const glm::vec3 gloss = at(reach->gloss, j), Cl = at(samples->seen.Cl, j);
-            const bool glossy = !((std::fabs(gloss.x) <= least) & (std::fabs(gloss.y) <= least) &
-                                  (std::fabs(gloss.z) <= least));
-            const bool reached = (Cl.x > 0.0f) | (Cl.y > 0.0f) | (Cl.z > 0.0f);
-            const bool open = (samples->kept[j] == 0) & (glossy | (samples->baked_E[j] == 0));
-            reach->wanted[j] = reached & open ? 1 : 0;
-        }
-    });
-}
-
-void TileRenderer::trace_shadows(const FrameContext& frame, const PosedLight& light) {
-    m_rays.size = 0;
-    for (int j = 0; j < m_count; ++j) {
-        m_reach.visible[j] = 1;
-        if (!m_reach.wanted[j]) continue;
-        m_shadow_sample[m_rays.size] = j;
-        m_rays.push(shadow_ray(light, at(m_reach.origin, j), at(m_samples.seen.L, j)));
-    }
-    const Stopwatch time;
-    frame.rays.occluded(m_rays, m_blocked.data());
-    statistics.shadow_rays += std::uint64_t(m_rays.size);
-    const double seconds = time.seconds();
-    statistics.ray_seconds += seconds;
-    statistics.shadow_seconds += seconds;
-    for (int r = 0; r < m_rays.size; ++r) {
-        m_reach.visible[m_shadow_sample[r]] = m_blocked[std::size_t(r)] ? 0 : 1;
-    }
-}
-
-void TileRenderer::add_light() {
-    wide([samples = &m_samples, reach = &m_reach, count = m_count]() ESTARA_LOOP {
-#pragma GCC ivdep
-        for (int j = 0; j < count; ++j) {
-            const bool visible = reach->visible[j] != 0;
-            const bool diffuse = visible & (samples->baked_E[j] == 0);
-            // Chosen, not multiplied by 0: what has not been asked for may hold anything.
-            const glm::vec3 none(0.0f), E = at(samples->seen.Cl, j) * reach->cosine[j];
-            put(samples->seen.E, j, at(samples->seen.E, j) + select(diffuse, E, none));
-            put(samples->Ci, j, at(samples->Ci, j) + select(visible, at(reach->gloss, j), none));
-        }
-    });
-}
-
-/// What E and the ambient light make, and the sum.
-void TileRenderer::close(const FrameContext& frame) {
-    m_samples.seen.A = frame.scene.ambient;
-    view(frame, false, m_reach.gloss);
-    wide([samples = &m_samples, reach = &m_reach, count = m_count]() ESTARA_LOOP {
-        for (int c = 0; c < 3; ++c) {
-#pragma GCC ivdep
-            for (int j = 0; j < count; ++j) samples->Ci[c][j] += reach->gloss[c][j];
-        }
-    });
-}
-
-void TileRenderer::view(const FrameContext& frame, bool lit, Planes& Ci) {
-    for (const Group& group : m_groups) {
-        const BoundShader& shader = *shading_of(frame, group).shader;
-        if (lit && !shader.glossy()) {
-            for (Plane& plane : Ci) std::fill(plane + group.first, plane + group.last, 0.0f);
-            continue;
-        }
-        const Stopwatch time;
-        shader.view(m_planes.data(), m_samples.seen, group.first, group.last, lit, Ci[0]);
-        const double seconds = time.seconds();
-        statistics.view_seconds += seconds;
-        cost_of(frame, group).view += seconds;
     }
 }
 

@@ -57,6 +57,10 @@ public:
     static constexpr int capacity = batch_capacity;
     static_assert(width * height == capacity);
 
+    /// Tiles across and down an image of so many pixels.
+    static int columns(int pixels) noexcept { return (pixels - 1) / width + 1; }
+    static int rows(int pixels) noexcept { return (pixels - 1) / height + 1; }
+
     /// Renders the pixels from `corner` on and writes them to the film.
     /// @param found  what the cache is to be given of this tile; not touched without reuse
     void render(const FrameContext& frame, const glm::ivec2& corner, Film& film, NewRecords& found);

@@ -61,10 +61,6 @@ struct FixedPoints::Impl {
     explicit Impl(const Scene& s) : scene(s) {}
 
     const BoundShader& shader() const { return *object->shader; }
-    int normal_plane() const {
-        const ShaderInfo& info = shader().info();
-        return info.channels.back().kind == ChannelKind::normal ? info.baked_floats - 3 : -1;
-    }
     Camera camera(int frame) const {
         const Pose pose = pose_at(scene, frame / fps);
         return Camera(pinhole_pose(scene, scene.cameras.front(), pose), raster.width,
@@ -109,7 +105,7 @@ struct FixedPoints::Impl {
     /// The view-independent part but for light; N is what the light falls on, object space.
     void evaluate(const Points& points, Work& w) const {
         shader().bake(points.surface, w.planes.data());
-        const int plane = normal_plane();
+        const int plane = normal_plane(shader().info());
         const float* const N = plane < 0 ? points.surface.N[0] : w.planes.data() + plane * capacity;
         std::copy_n(N, 3 * capacity, w.N[0]);
     }
@@ -266,8 +262,7 @@ FixedPoints::FixedPoints(const Scene& scene, const std::string& name)
     my.world_from_object = glm::mat3(m);
     my.lights = posed_lights(scene, pose);
     my.filter_width = float(bounds(my.object->mesh).diagonal() / 512.0);
-    my.layout = {my.shader().info().baked_floats - (my.normal_plane() < 0 ? 0 : 3),
-                 int(my.lights.size())};
+    my.layout = record_layout(my.shader().info(), int(my.lights.size()));
     my.collect();
     std::vector<RecordLayout> layouts(scene.objects.size(), my.layout);
     std::vector<int> objects;

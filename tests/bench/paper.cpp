@@ -56,9 +56,6 @@ Scene made_scene(const Settings& settings, const std::string& name) {
 
 Json spread_json(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }
 
-/// What auto does with a shader whose reuse does not pay: it is evaluated directly.
-constexpr double least_predicted = 1.0 + 1.0 / 30.0;
-
 Json table_2(const Settings& settings, std::string& markdown) {
     Scene scene = made_scene(settings, "simple");
     markdown +=
@@ -103,7 +100,7 @@ Json table_2(const Settings& settings, std::string& markdown) {
         entry["predicted_100"] = predicted;
         entry["limit"] = limit_of_speedup(t);
         entry["break_even"] = break_even(t);
-        const bool declined = predicted < least_predicted;
+        const bool declined = predicted < least_gain;
         entry["auto"] = declined ? "direct" : "cache";
         if (declined) {
             for (const char* n : {"50", "100"}) {  // what estara-render does of its own accord

@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "estara/shaders/registry.h"
+
 namespace estara {
 
 /// What is kept of a hit point of one object: floats, in this order.
@@ -32,6 +34,13 @@ struct RecordLayout {
     int sides() const noexcept { return E() + 3; }
     int floats() const noexcept { return is_lit() ? sides() + words() : E(); }
 };
+
+/// First float of a shader's own normal in its baked record, or -1: it is the last channel.
+int normal_plane(const ShaderInfo& info) noexcept;
+
+/// The layout of a shader's records.
+/// @param lights  as RecordLayout has them
+RecordLayout record_layout(const ShaderInfo& info, int lights) noexcept;
 
 /// What a ray's hit point is known by: unique as long as the cache lives. Smaller is older.
 struct RayId {

@@ -16,6 +16,9 @@ struct SampleTimes {
     double later_with_reuse() const noexcept { return vd + extract; }    ///< T_s^3
 };
 
+/// Reuse must promise this speedup to be chosen: what gains less is within the error of measuring.
+inline constexpr double least_gain = 1.0 + 1.0 / 30.0;
+
 /// T^1, Eq. 3: a sample in n camera positions, evaluated in each.
 double time_without_reuse(const SampleTimes& times, double n) noexcept;
 
