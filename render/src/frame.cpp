@@ -57,6 +57,7 @@ ReuseCounts& ReuseCounts::operator+=(const ReuseCounts& other) noexcept {
     misses += other.misses;
     occluded += other.occluded;
     turned += other.turned;
+    beside += other.beside;
     refilled += other.refilled;
     kept += other.kept;
     refused += other.refused;
@@ -80,16 +81,13 @@ struct FrameRenderer::Impl {
 
     /// @param number  of [0, tile_count())
     void render_tile(const FrameContext& frame, int number, Film& film, NewRecords& found) {
-        const int i = number * settings.tile_step;
-        const glm::ivec2 corner(i % columns() * TileRenderer::width,
-                                i / columns() * TileRenderer::height);
+        const glm::ivec2 corner = grid().corner(number * settings.tile_step);
         tiles.local().render(frame, corner, film, found);
     }
     void render_and_keep(const FrameContext& frame, int count, ReuseCache& cache, Film& film,
                          const std::function<void()>& tile_done, ReuseCounts& counts);
 
-    int columns() const { return TileRenderer::columns(settings.width); }
-    int rows() const { return TileRenderer::rows(settings.height); }
+    TileGrid grid() const { return {settings.width, settings.height}; }
 };
 
 FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSettings& settings)
@@ -111,7 +109,7 @@ FrameRenderer::FrameRenderer(const Scene& scene, RayScene& rays, const FrameSett
 FrameRenderer::~FrameRenderer() = default;
 
 int FrameRenderer::tile_count() const noexcept {
-    return (m_impl->columns() * m_impl->rows() - 1) / m_impl->settings.tile_step + 1;
+    return (m_impl->grid().count() - 1) / m_impl->settings.tile_step + 1;
 }
 
 /// Tiles in parallel; what they find goes into the cache in the order of the tiles, so that its
@@ -189,6 +187,7 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
                                my.face_normals,
                                my.tangents,
                                my.pattern,
+                               moments_of(my.pattern),
                                my.settings,
                                cache != nullptr ? my.reprojection.get() : nullptr};
 

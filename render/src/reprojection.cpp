@@ -11,16 +11,27 @@
 #include "estara/shaders/wide.h"
 
 namespace estara {
-namespace {
+/// From the top: the pixel's number in the tile (9 bits), the rectangle, whether it was hidden,
+/// page and index of the point.
+struct Reprojection::Fallen {
+    static constexpr int index = 0, page = RayId::index_bits, hidden = page + ReuseCache::page_bits,
+                         stratum = hidden + 1, pixel = stratum + 16;
+    static_assert(pixel + 9 == 64 && batch_capacity == 1 << 9);
 
-void keep_smallest(std::uint64_t& at, std::uint64_t value) noexcept {
-    const std::atomic_ref<std::uint64_t> kept(at);
-    std::uint64_t old = kept.load(std::memory_order_relaxed);
-    while (value < old && !kept.compare_exchange_weak(old, value, std::memory_order_relaxed)) {
+    static std::uint32_t page_of(std::uint64_t bits) noexcept {
+        return std::uint32_t(bits >> page) & ((1u << ReuseCache::page_bits) - 1);
     }
-}
+    static int stratum_of(std::uint64_t bits) noexcept { return int(bits >> stratum & 0xffff); }
+    static int index_of(std::uint64_t bits) noexcept {
+        return int(bits & ((1u << RayId::index_bits) - 1));
+    }
+};
 
-}  // namespace
+struct Reprojection::Sorting {
+    std::vector<std::uint64_t> fallen;  ///< by pixel
+    std::vector<LeftOver> left_over;    ///< of a pixel
+    std::vector<std::uint64_t> slots;   ///< of a pixel, by rectangle
+};
 
 template <class F>
 void Reprojection::in_parallel(std::size_t count, std::size_t grain, const F& f) {
@@ -34,33 +45,53 @@ void Reprojection::in_parallel(std::size_t count, std::size_t grain, const F& f)
 Reprojection::Reprojection(const FrameSettings& settings)
     : m_width(settings.width),
       m_height(settings.height),
+      m_tiles(settings.width, settings.height),
       m_strata(settings.spp, settings.seed),
-      m_slots(std::size_t(settings.width) * std::size_t(settings.height) *
-              std::size_t(settings.spp)),
-      m_claims(new std::uint64_t[m_slots]) {}
+      m_tile_slots(sample_stride * std::size_t(settings.spp)),
+      m_slots(new std::uint64_t[m_tile_slots * std::size_t(m_tiles.count())]) {}
 
 void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
                          std::span<const PosedInstance> instances) {
     m_cache = &cache;
     m_seconds = 0.0;
     cache.start_frame();
-    in_parallel(m_slots, 1u << 16, [&](std::size_t first, std::size_t last) {
-        std::fill(m_claims.get() + first, m_claims.get() + last, ~std::uint64_t{0});
-    });
+    for (Bins& bins : m_bins) {
+        for (auto& bin : bins) bin.clear();
+    }
     const auto pages = std::size_t(cache.page_count());
     m_in_view.assign(pages, 0);
+    m_serving.assign(pages, 0);
+    m_looked_at.assign(pages, 0);
     in_parallel(pages, 8, [&](std::size_t first, std::size_t last) {
+        Bins& bins = m_bins.local();
+        bins.resize(std::size_t(m_tiles.count()));
         for (std::size_t p = first; p < last; ++p) {
             const ReuseCache::Page& page = cache.page(std::uint32_t(p));
             if (page.instance < 0) continue;
             const PosedInstance& instance = instances[std::size_t(page.instance)];
             if (!instance.is_there || !may_be_seen(pose, instance, page)) continue;
             m_in_view[p] = 1;
-            claim(pose, instance, int(p));
+            project(pose, instance, int(p), bins);
         }
     });
-    count_serving();
+    in_parallel(std::size_t(m_tiles.count()), 1, [&](std::size_t first, std::size_t last) {
+        thread_local Sorting sorting;
+        for (std::size_t tile = first; tile < last; ++tile) serve_tile(int(tile), sorting);
+    });
+    for (std::size_t p = 0; p < pages; ++p) {
+        if (m_serving[p] + m_looked_at[p] > 0) cache.mark_used(std::uint32_t(p), m_serving[p]);
+    }
     cache.queue_unused(m_in_view);
+}
+
+std::uint64_t Reprojection::bytes() const noexcept {
+    std::uint64_t sum = m_tile_slots * std::size_t(m_tiles.count()) * sizeof(std::uint64_t) +
+                        (m_serving.capacity() + m_looked_at.capacity()) * sizeof(int) +
+                        m_in_view.capacity();
+    for (const Bins& bins : m_bins) {
+        for (const auto& bin : bins) sum += bin.capacity() * sizeof(std::uint64_t);
+    }
+    return sum;
 }
 
 /// Whether the ball around a page's points reaches into the view.
@@ -82,51 +113,19 @@ bool Reprojection::may_be_seen(const PinholePose& pose, const PosedInstance& ins
              outside(glm::dot(d, pose.up), ty));
 }
 
-/// How many points of each page have won a sample.
-void Reprojection::count_serving() {
-    std::vector<int> serving(m_in_view.size(), 0), looked_at(m_in_view.size(), 0);
-    in_parallel(m_slots, 1u << 14, [&](std::size_t first, std::size_t last) {
-        std::uint32_t current = ~0u;
-        int run = 0;  // neighbours are mostly of one page
-        const auto add = [&] {
-            if (run > 0)
-                std::atomic_ref(serving[current]).fetch_add(run, std::memory_order_relaxed);
-        };
-        for (std::size_t s = first; s < last; ++s) {
-            RayId id;
-            id.bits = m_claims[s] & ~hidden;
-            if (id.bits == none) continue;
-            if ((m_claims[s] & hidden) != 0) {  // looked at, but of little hope
-                std::atomic_ref(looked_at[id.page()]).store(1, std::memory_order_relaxed);
-                continue;
-            }
-            if (id.page() != current) {
-                add();
-                current = id.page();
-                run = 0;
-            }
-            ++run;
-        }
-        add();
-    });
-    for (std::size_t p = 0; p < serving.size(); ++p) {
-        if (serving[p] + looked_at[p] > 0) m_cache->mark_used(std::uint32_t(p), serving[p]);
-    }
-}
-
-void Reprojection::claim(const PinholePose& pose, const PosedInstance& instance, int p) noexcept {
+/// Sorts the points of a page into the tiles that they fall into.
+void Reprojection::project(const PinholePose& pose, const PosedInstance& instance, int p,
+                           Bins& bins) {
     constexpr int most = 1 << RayId::index_bits;
     struct Places {
-        std::uint32_t pixel[most];
-        int stratum[most];  ///< -1: outside the image
-        std::size_t slot[most];
-        int index[most];  ///< of the points inside
+        int tile[most];  ///< -1: outside the image
+        int pixel[most], stratum[most];
     };
     thread_local Places places;
     const ReuseCache::Page& page = m_cache->page(std::uint32_t(p));
     wide([=, to = &places, m = instance.world_from_object, size = page.size, Px = page.P(0),
           Py = page.P(1), Pz = page.P(2), width = m_width, height = m_height,
-          columns = m_strata.columns(), rows = m_strata.rows(),
+          tile_columns = m_tiles.columns, columns = m_strata.columns(), rows = m_strata.rows(),
           shift = m_strata.shift()]() ESTARA_LOOP {
         const glm::vec3 mx(m[0]), my(m[1]), mz(m[2]), mt(m[3]);
 #pragma GCC ivdep
@@ -137,28 +136,129 @@ void Reprojection::claim(const PinholePose& pose, const PosedInstance& instance,
                               (at.y >= 0.0f) & (at.y < float(height));
             const float x = seen ? at.x : 0.0f, y = seen ? at.y : 0.0f;
             const int column = int(x), row = int(y);
-            const int stratum = SampleStrata::cell(x - float(column), shift.x, columns) +
-                                columns * SampleStrata::cell(y - float(row), shift.y, rows);
-            to->stratum[i] = seen ? stratum : -1;
-            to->pixel[i] = std::uint32_t(row) * std::uint32_t(width) + std::uint32_t(column);
+            to->stratum[i] = SampleStrata::cell(x - float(column), shift.x, columns) +
+                             columns * SampleStrata::cell(y - float(row), shift.y, rows);
+            to->tile[i] = seen ? TileGrid::tile(column, row, tile_columns) : -1;
+            to->pixel[i] = TileGrid::number(column, row);
         }
     });
-    // Slots are all over memory: they are asked for before any is used.
-    const std::size_t pixels = std::size_t(m_width) * std::size_t(m_height);
-    int count = 0;
+    const std::uint8_t* const was_hidden = page.hidden();
+    const std::uint64_t of_page = std::uint64_t(p) << Fallen::page;
     for (int i = 0; i < page.size; ++i) {
-        if (places.stratum[i] < 0) continue;
-        const std::size_t slot =
-            std::size_t(m_strata.sample(places.stratum[i])) * pixels + places.pixel[i];
-        __builtin_prefetch(&m_claims[slot], 1);
-        places.slot[count] = slot;
-        places.index[count++] = i;
+        if (places.tile[i] < 0) continue;
+        bins[std::size_t(places.tile[i])].push_back(
+            std::uint64_t(places.pixel[i]) << Fallen::pixel |
+            std::uint64_t(places.stratum[i]) << Fallen::stratum |
+            std::uint64_t(was_hidden[i]) << Fallen::hidden | of_page | std::uint64_t(i));
     }
-    for (int k = 0; k < count; ++k) {
-        const int i = places.index[k];
-        const RayId id(page.born, std::uint32_t(p), i);
-        keep_smallest(m_claims[places.slot[k]], id.bits | (page.hidden()[i] != 0 ? hidden : 0));
+}
+
+/// Sorts a tile's points by pixel and fills its slots.
+void Reprojection::serve_tile(int tile, Sorting& sorting) {
+    std::array<std::uint32_t, batch_capacity + 1> first{};
+    const auto each = [&](auto&& f) {
+        for (const Bins& bins : m_bins) {
+            if (bins.empty()) continue;  // a thread that has had no page yet
+            for (const std::uint64_t fallen : bins[std::size_t(tile)]) f(fallen);
+        }
+    };
+    each([&](std::uint64_t fallen) { ++first[(fallen >> Fallen::pixel) + 1]; });
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    sorting.fallen.resize(first.back());
+    std::array<std::uint32_t, batch_capacity> next;
+    std::copy_n(first.begin(), next.size(), next.begin());
+    each([&](std::uint64_t fallen) { sorting.fallen[next[fallen >> Fallen::pixel]++] = fallen; });
+
+    std::uint64_t* const slots = m_slots.get() + std::size_t(tile) * m_tile_slots;
+    const auto count = std::size_t(m_strata.count());
+    sorting.slots.resize(count);
+    for (std::size_t i = 0; i < batch_capacity; ++i) {
+        std::fill(sorting.slots.begin(), sorting.slots.end(), none);
+        if (first[i] < first[i + 1]) {
+            serve_pixel({sorting.fallen.data() + first[i], first[i + 1] - first[i]},
+                        sorting.slots.data(), sorting.left_over);
+        }
+        for (std::size_t s = 0; s < count; ++s) {
+            slots[std::size_t(m_strata.sample(int(s))) * sample_stride + i] = sorting.slots[s];
+        }
     }
+    count_serving(slots);
+}
+
+/// @param slots  by rectangle, all of them none
+void Reprojection::serve_pixel(std::span<const std::uint64_t> fallen, std::uint64_t* slots,
+                               std::vector<LeftOver>& left_over) const {
+    const auto id = [&](std::uint64_t bits) {
+        const std::uint32_t page = Fallen::page_of(bits);
+        return RayId(m_cache->page(page).born, page, Fallen::index_of(bits)).bits;
+    };
+    const auto is_hidden = [](std::uint64_t bits) { return (bits >> Fallen::hidden & 1) != 0; };
+    left_over.clear();
+    bool any_hidden = false;
+    for (const std::uint64_t bits : fallen) {
+        if (is_hidden(bits)) {
+            any_hidden = true;
+            continue;
+        }
+        const int stratum = Fallen::stratum_of(bits);
+        std::uint64_t& slot = slots[stratum];
+        const std::uint64_t one = id(bits);
+        if (slot != none) left_over.push_back({std::max(one, slot), stratum});
+        slot = std::min(one, slot);
+    }
+    if (!left_over.empty()) spread(left_over, slots);
+    if (!any_hidden) return;
+    for (const std::uint64_t bits : fallen) {
+        std::uint64_t& slot = slots[Fallen::stratum_of(bits)];
+        if (is_hidden(bits) && (slot == none || (slot & hidden) != 0)) {
+            slot = std::min(slot, id(bits) | hidden);
+        }
+    }
+}
+
+/// Gives points that their rectangles have not taken to empty ones beside them, the oldest first.
+void Reprojection::spread(std::vector<LeftOver>& points, std::uint64_t* slots) const {
+    std::sort(points.begin(), points.end());
+    const int columns = m_strata.columns(), count = m_strata.count();
+    for (const LeftOver& point : points) {
+        const int s = point.stratum, column = s % columns;
+        const auto take = [&](bool exists, int beside) {
+            if (!exists || slots[beside] != none) return false;
+            slots[beside] = point.id;
+            return true;
+        };
+        if (take(column > 0, s - 1) || take(column + 1 < columns, s + 1)) continue;
+        if (take(s >= columns, s - columns) || take(s + columns < count, s + columns)) continue;
+    }
+}
+
+/// How many points of each page serve a tile.
+void Reprojection::count_serving(const std::uint64_t* slots) {
+    std::uint32_t current = ~0u;
+    int run = 0;  // neighbours are mostly of one page
+    const auto add = [&] {
+        if (run == 0) return;
+        std::atomic_ref(m_serving[current]).fetch_add(run, std::memory_order_relaxed);
+    };
+    for (int sample = 0; sample < m_strata.count(); ++sample) {
+        const std::uint64_t* const some = slots + std::size_t(sample) * sample_stride;
+        for (std::size_t i = 0; i < batch_capacity; ++i) {
+            if (some[i] == none) continue;
+            RayId id;
+            id.bits = some[i] & ~hidden;
+            if ((some[i] & hidden) != 0) {  // looked at, but of little hope
+                std::atomic_ref(m_looked_at[id.page()]).store(1, std::memory_order_relaxed);
+                continue;
+            }
+            if (id.page() != current) {
+                add();
+                current = id.page();
+                run = 0;
+            }
+            ++run;
+        }
+    }
+    add();
 }
 
 }  // namespace estara

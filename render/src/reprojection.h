@@ -1,6 +1,8 @@
 // Which hit points of earlier frames stand in for the samples of this one.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -12,6 +14,7 @@
 #include "estara/render/reuse_cache.h"
 #include "estara/render/sampling.h"
 #include "instances.h"
+#include "tile_grid.h"
 
 namespace estara {
 
@@ -30,12 +33,16 @@ struct NewRecords {
 };
 
 /// Projects all hit points of a ReuseCache onto the image of a frame (the paper's section 3.2,
-/// Fig. 1b) and gives each to the sample in whose rectangle of the pixel (SampleStrata) it falls.
-/// Of several the oldest wins, so that what is seen changes as little as it can; but one that was
-/// hidden when it was last looked at loses to any that was not.
+/// Fig. 1b) and gives each pixel as many of those that fall into it as it has samples.
 ///
-/// Each sample has so at most one point, whose rectangle has the same area for all: a pixel is the
-/// same box filter as it is without reuse, and what was not seen before counts by its area.
+/// A pixel is divided into a rectangle for each of its samples (SampleStrata). The oldest point in
+/// a rectangle serves its sample; then the oldest of those that are left over serve samples of
+/// empty rectangles beside theirs, so that a point goes on to serve while it crosses its pixel.
+/// (Points move all alike where they move at all, and a pattern that has been moved is as evenly
+/// spread as it was, but no longer has one point in each rectangle.) A point that was hidden when
+/// it was last looked at serves only in its own rectangle, and only if no other does.
+///
+/// Each sample has so at most one point: a pixel is the same box filter as it is without reuse.
 class Reprojection {
 public:
     explicit Reprojection(const FrameSettings& settings);
@@ -51,42 +58,67 @@ public:
     };
     /// @param sample  of the pattern
     Candidate candidate(int x, int y, int sample) const noexcept {
-        const std::uint64_t claim = m_claims[slot(x, y, sample)];
+        const std::uint64_t slot =
+            m_slots[std::size_t(TileGrid::tile(x, y, m_tiles.columns)) * m_tile_slots +
+                    std::size_t(sample) * sample_stride + std::size_t(TileGrid::number(x, y))];
         Candidate found;
-        found.id.bits = claim & ~hidden;
-        found.exists = found.id.bits != none;
-        found.was_hidden = (claim & hidden) != 0;
+        found.id.bits = slot & ~hidden;
+        found.exists = slot != none;
+        found.was_hidden = (slot & hidden) != 0;
         return found;
     }
 
+    const SampleStrata& strata() const noexcept { return m_strata; }
     ReuseCache& cache() const noexcept { return *m_cache; }
-    std::uint64_t bytes() const noexcept { return m_slots * sizeof(std::uint64_t); }
-    std::uint64_t slots() const noexcept { return m_slots; }
+    /// What all this takes beside the cache.
+    std::uint64_t bytes() const noexcept;
+    std::uint64_t slots() const noexcept {
+        return std::uint64_t(m_width) * std::uint64_t(m_height) * std::uint64_t(m_strata.count());
+    }
     /// Of the last start(), summed over threads.
     double seconds() const noexcept { return m_seconds; }
 
 private:
-    static constexpr std::uint64_t hidden = std::uint64_t{1} << 63, none = hidden - 1;
+    static constexpr std::uint64_t hidden = std::uint64_t{1} << 63, none = ~std::uint64_t{0};
+    /// Samples of a tile lie a little more apart than its pixels take, or they would all be wanted
+    /// in the same few lines of the processor's cache.
+    static constexpr std::size_t sample_stride = batch_capacity + 8;
 
-    std::size_t slot(int x, int y, int sample) const noexcept {
-        return (std::size_t(sample) * std::size_t(m_height) + std::size_t(y)) *
-                   std::size_t(m_width) +
-               std::size_t(x);
-    }
+    /// A point that has fallen into a tile, packed: tiles hold many.
+    struct Fallen;
+    /// Points of one thread by the tile that they have fallen into.
+    using Bins = std::vector<std::vector<std::uint64_t>>;
+    /// A point whose rectangle an older one has taken.
+    struct LeftOver {
+        std::uint64_t id;
+        int stratum;
+        bool operator<(const LeftOver& other) const noexcept { return id < other.id; }
+    };
+    /// What a tile's points are sorted in.
+    struct Sorting;
+
     /// f(first, last) on parts of [0, count), timed.
     template <class F>
     void in_parallel(std::size_t count, std::size_t grain, const F& f);
     bool may_be_seen(const PinholePose& pose, const PosedInstance& instance,
                      const ReuseCache::Page& page) const noexcept;
-    void claim(const PinholePose& pose, const PosedInstance& instance, int page) noexcept;
-    void count_serving();
+    void project(const PinholePose& pose, const PosedInstance& instance, int page, Bins& bins);
+    void serve_tile(int tile, Sorting& sorting);
+    void serve_pixel(std::span<const std::uint64_t> fallen, std::uint64_t* slots,
+                     std::vector<LeftOver>& left_over) const;
+    void spread(std::vector<LeftOver>& points, std::uint64_t* slots) const;
+    void count_serving(const std::uint64_t* slots);
 
     int m_width, m_height;
+    TileGrid m_tiles;
     SampleStrata m_strata;
-    std::size_t m_slots;
-    std::unique_ptr<std::uint64_t[]> m_claims;  ///< by slot: the winner's id, above it hidden
+    std::size_t m_tile_slots;
+    std::unique_ptr<std::uint64_t[]>
+        m_slots;  ///< by tile, sample and pixel: a RayId, hidden or not
+    tbb::enumerable_thread_specific<Bins> m_bins;
     std::atomic<double> m_seconds = 0.0;
-    std::vector<std::uint8_t> m_in_view;  ///< by page
+    std::vector<std::uint8_t> m_in_view;      ///< by page
+    std::vector<int> m_serving, m_looked_at;  ///< by page
     ReuseCache* m_cache = nullptr;
 };
 

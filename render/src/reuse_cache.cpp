@@ -32,7 +32,7 @@ ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
                        std::vector<int> objects)
     : m_layouts(std::move(layouts)), m_objects(std::move(objects)) {
     const std::uint64_t pages =
-        std::min<std::uint64_t>(bytes / page_bytes, (std::uint64_t{1} << 31) - 1);
+        std::min<std::uint64_t>(bytes / page_bytes, std::uint64_t{1} << page_bits);
     if (pages == 0) {
         throw Error(fmt::format("--cache-memory {}: a page of the cache alone takes {}",
                                 format_bytes(bytes), format_bytes(page_bytes)));

@@ -41,6 +41,37 @@ std::vector<glm::vec2> sample_pattern(int spp, std::uint32_t seed) {
     return pattern;
 }
 
+PlaceMoments moments_of(std::span<const glm::vec2> pattern) {
+    glm::dvec2 mean(0.0);
+    glm::dvec3 products(0.0);
+    for (const glm::vec2& place : pattern) {
+        const glm::dvec2 p = glm::dvec2(place) - 0.5;
+        mean += p;
+        products += glm::dvec3(p.x * p.x, p.x * p.y, p.y * p.y);
+    }
+    mean /= double(pattern.size());
+    products /= double(pattern.size());
+    return {mean, float(products.x), float(products.y), float(products.z)};
+}
+
+glm::vec2 slant(const PlaceMoments& samples, const glm::vec2& target) noexcept {
+    const glm::vec2 mean = samples.mean, shift = mean - target;
+    constexpr float nothing = 1e-3f;  // pixels
+    if (!(glm::dot(shift, shift) > nothing * nothing)) return glm::vec2(0.0f);
+    // A little of the pixel's own extent: few samples, or samples in one place, have no covariance.
+    constexpr float least = 1e-3f;
+    const float xx = samples.xx - mean.x * mean.x + least;
+    const float xy = samples.xy - mean.x * mean.y;
+    const float yy = samples.yy - mean.y * mean.y + least;
+    const float determinant = xx * yy - xy * xy;
+    if (!(determinant > 0.0f)) return glm::vec2(0.0f);
+    const glm::vec2 g =
+        glm::vec2(yy * shift.x - xy * shift.y, xx * shift.y - xy * shift.x) / determinant;
+    const float most =
+        std::abs(g.x) * (0.5f + std::abs(mean.x)) + std::abs(g.y) * (0.5f + std::abs(mean.y));
+    return most > 1.0f ? g / most : g;
+}
+
 SampleStrata::SampleStrata(int spp, std::uint32_t seed) : m_columns(spp), m_rows(1) {
     while (m_columns % 2 == 0 && m_columns > m_rows) {
         m_columns /= 2;
@@ -49,9 +80,11 @@ SampleStrata::SampleStrata(int spp, std::uint32_t seed) : m_columns(spp), m_rows
     const glm::dvec2 shift = shift_of(spp, seed);
     m_shift = {wrapped(shift.x), wrapped(shift.y)};
     m_sample.resize(std::size_t(spp));
+    m_place.resize(std::size_t(spp));
     for (int i = 0; i < spp; ++i) {
         const glm::ivec2 cell(hammersley(i, spp) * glm::dvec2(m_columns, m_rows));
         m_sample[std::size_t(cell.y * m_columns + cell.x)] = i;
+        m_place[std::size_t(i)] = cell;
     }
 }
 

@@ -39,6 +39,7 @@ Json json_of(const ReuseCounts& r) {
             {"misses", r.misses},
             {"occluded", r.occluded},
             {"turned", r.turned},
+            {"beside", r.beside},
             {"refilled", r.refilled},
             {"kept", r.kept},
             {"refused", r.refused},

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "tile.h"
+#include "tile_grid.h"
 
 namespace estara {
 namespace {
@@ -29,11 +29,10 @@ public:
     Trials(const Scene& scene, RayScene& rays, const Options& options, int camera)
         : m_scene(scene), m_options(options), m_camera(camera), m_settings(options.frame) {
         m_settings.aovs = {};
-        const int columns = TileRenderer::columns(m_settings.width),
-                  rows = TileRenderer::rows(m_settings.height);
-        m_settings.tile_step = std::max(1, columns * rows / tiles_measured);
+        const TileGrid tiles(m_settings.width, m_settings.height);
+        m_settings.tile_step = std::max(1, tiles.count() / tiles_measured);
         // Else the tiles would all lie below one another.
-        while (std::gcd(m_settings.tile_step, columns) != 1) ++m_settings.tile_step;
+        while (std::gcd(m_settings.tile_step, tiles.columns) != 1) ++m_settings.tile_step;
         m_renderer = std::make_unique<FrameRenderer>(scene, rays, m_settings);
     }
 

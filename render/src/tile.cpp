@@ -14,18 +14,6 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
     return length > 0.0 && std::isfinite(length) ? glm::vec3(glm::dvec3(v) / length) : otherwise;
 }
 
-ESTARA_KERNEL bool is_finite(float v) noexcept { return v - v == 0.0f; }
-
-/// First float of the channel "color" in a baked record, or -1.
-int color_offset(const ShaderInfo& info) noexcept {
-    int offset = 0;
-    for (const ChannelInfo& channel : info.channels) {
-        if (channel.name == "color" && channel.components == 3) return offset;
-        offset += channel.components;
-    }
-    return -1;
-}
-
 }  // namespace
 
 const ObjectShading& TileRenderer::shading_of(const FrameContext& frame, const Group& group) const {
@@ -40,14 +28,18 @@ ObjectCost& TileRenderer::cost_of(const FrameContext& frame, const Group& group)
 void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, Film& film,
                           NewRecords& found) {
     list_pixels(frame, corner);
-    clear_sums(frame.settings.aovs);
+    clear_sums(frame);
+    if (frame.reuse != nullptr) {
+        list_points(frame, corner);
+        trace_own_rays(frame);
+    }
     for (std::size_t sample = 0; sample < frame.pattern.size(); ++sample) {
         if (frame.reuse != nullptr) {
             recall(frame, int(sample));
         } else {
             std::fill_n(m_needs_ray, m_pixels.size(), 1);
         }
-        trace(frame, frame.pattern[sample]);
+        trace(frame, int(sample));
         group_by_instance(frame);
         if (frame.reuse != nullptr) add_recalled_groups();
         m_samples.surface.size = m_count;
@@ -65,41 +57,30 @@ void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, F
         for (std::size_t l = 0; l < frame.lights.size(); ++l) light(frame, int(l));
         close(frame);
         if (frame.reuse != nullptr) keep_light(frame, found);
-        accumulate(frame);
+        accumulate(frame, frame.pattern[sample]);
     }
     resolve(frame, film);
 }
 
-void TileRenderer::clear_sums(const Aovs& wanted) {
-    std::fill_n(m_sums.color[0], 3 * capacity, 0.0f);
-    for (int* counts : {m_sums.hits, m_sums.recalled, m_sums.age, m_sums.occluded}) {
-        std::fill_n(counts, capacity, 0);
-    }
-    if (!wanted.any()) return;
-    for (Planes* planes : {&m_sums.albedo, &m_sums.N, &m_sums.P}) {
-        std::fill_n((*planes)[0], 3 * capacity, 0.0f);
-    }
-    std::fill_n(m_sums.depth, capacity, 0.0f);
-}
-
-// In squares of 4 x 4 pixels: the 16 rays of a packet stay close together.
 void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corner) {
     m_pixels.clear();
+    m_numbers.clear();
     for (int i = 0; i < capacity; ++i) {
-        const int square = i / 16, inside = i % 16;
-        const glm::ivec2 pixel = corner + glm::ivec2(square % (width / 4) * 4 + inside % 4,
-                                                     square / (width / 4) * 4 + inside / 4);
+        const glm::ivec2 pixel = corner + TileGrid::place(i);
         if (pixel.x < frame.settings.width && pixel.y < frame.settings.height) {
             m_pixels.push_back(pixel);
+            m_numbers.push_back(i);
         }
     }
 }
 
-void TileRenderer::trace(const FrameContext& frame, const glm::vec2& offset) {
+/// Finds what the samples of a pass see that are not recalled.
+void TileRenderer::trace(const FrameContext& frame, int sample) {
     const Stopwatch time;
+    const glm::vec2 offset = frame.pattern[std::size_t(sample)];
     m_ray_count = 0;
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        if (m_needs_ray[i] == 0) continue;
+        if (m_needs_ray[i] == 0 || own_hit(frame, sample, i) != nullptr) continue;
         m_x[m_ray_count] = float(m_pixels[i].x) + offset.x;
         m_y[m_ray_count] = float(m_pixels[i].y) + offset.y;
         m_ray_pixel[m_ray_count++] = int(i);
@@ -107,6 +88,17 @@ void TileRenderer::trace(const FrameContext& frame, const glm::vec2& offset) {
     frame.camera.primary_rays(m_x, m_y, m_ray_count, m_rays);
     frame.rays.intersect(m_rays, m_hits);
     statistics.primary_rays += std::uint64_t(m_ray_count);
+    if (frame.reuse != nullptr) {
+        for (std::size_t i = 0; i < m_pixels.size(); ++i) {
+            const Hit* const hit = m_needs_ray[i] != 0 ? own_hit(frame, sample, i) : nullptr;
+            if (hit == nullptr) continue;
+            m_hits.instance[m_ray_count] = hit->instance;
+            m_hits.triangle[m_ray_count] = hit->triangle;
+            m_hits.b1[m_ray_count] = hit->b1;
+            m_hits.b2[m_ray_count] = hit->b2;
+            m_ray_pixel[m_ray_count++] = int(i);
+        }
+    }
     statistics.ray_seconds += time.seconds();
 }
 
@@ -385,67 +377,6 @@ void TileRenderer::look_up(const FrameContext& frame, const Group& group,
             m_planes[std::size_t(k * capacity + m_missed[m])] =
                 m_missed_planes[std::size_t(k * capacity) + m];
         }
-    }
-}
-
-void TileRenderer::accumulate(const FrameContext& frame) {
-    const Samples& s = m_samples;
-    for (int j = 0; j < m_count; ++j) {
-        const int pixel = s.pixel[j];
-        ++m_sums.hits[pixel];
-        for (int c = 0; c < 3; ++c) m_sums.color[c][pixel] += s.Ci[c][j];
-    }
-    const Aovs& wanted = frame.settings.aovs;
-    if (!wanted.any()) return;
-    for (const Group& group : m_groups) {
-        const int albedo = color_offset(shading_of(frame, group).shader->info());
-        for (int j = group.first; j < group.last; ++j) {
-            const int pixel = s.pixel[j];
-            m_sums.recalled[pixel] += s.age[j] >= 0 ? 1 : 0;
-            m_sums.age[pixel] += s.age[j] >= 0 ? s.age[j] : 0;
-            m_sums.depth[pixel] += s.distance[j];
-            for (int c = 0; c < 3; ++c) {
-                m_sums.N[c][pixel] += s.seen.N[c][j];
-                m_sums.P[c][pixel] += s.P[c][j];
-                if (albedo < 0) continue;
-                m_sums.albedo[c][pixel] += m_planes[std::size_t((albedo + c) * capacity + j)];
-            }
-        }
-    }
-}
-
-void TileRenderer::resolve(const FrameContext& frame, Film& film) {
-    const float samples = float(frame.pattern.size());
-    const float scale = std::exp2(frame.settings.exposure) / samples;
-    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        const auto p = int(i);
-        const std::size_t to = film.index(m_pixels[i].x, m_pixels[i].y);
-        film.color[to] = glm::vec4(0.0f);
-        if (film.aovs.albedo) film.albedo[to] = glm::vec3(0.0f);
-        if (film.aovs.normal) film.N[to] = glm::vec3(0.0f);
-        if (film.aovs.position) film.P[to] = glm::vec3(0.0f);
-        if (film.aovs.depth) film.depth[to] = 0.0f;
-        if (film.aovs.hit) film.hit[to] = 0.0f;
-        if (film.aovs.age) film.age[to] = 0.0f;
-        if (film.aovs.occluded) film.occluded[to] = float(m_sums.occluded[i]) / samples;
-        if (m_sums.hits[i] == 0) continue;
-        const float hits = float(m_sums.hits[i]);
-        glm::vec3 color = at(m_sums.color, p) * scale;
-        glm::vec3 albedo = film.aovs.albedo ? at(m_sums.albedo, p) / hits : glm::vec3(0.0f);
-        const bool good_color = is_finite(color.x) & is_finite(color.y) & is_finite(color.z);
-        const bool good_albedo = is_finite(albedo.x) & is_finite(albedo.y) & is_finite(albedo.z);
-        if (!good_color || !good_albedo) {
-            ++statistics.bad_pixels;
-            if (!good_color) color = glm::vec3(0.0f);
-            if (!good_albedo) albedo = glm::vec3(0.0f);
-        }
-        film.color[to] = glm::vec4(color, hits / samples);
-        if (film.aovs.albedo) film.albedo[to] = albedo;
-        if (film.aovs.normal) film.N[to] = at(m_sums.N, p) / hits;
-        if (film.aovs.position) film.P[to] = at(m_sums.P, p) / hits;
-        if (film.aovs.depth) film.depth[to] = m_sums.depth[i] / hits;
-        if (film.aovs.hit) film.hit[to] = float(m_sums.recalled[i]) / samples;
-        if (film.aovs.age) film.age[to] = float(m_sums.age[i]) / hits;
     }
 }
 

@@ -12,6 +12,7 @@
 #include "estara/render/frame.h"
 #include "estara/shaders/batch.h"
 #include "instances.h"
+#include "outlines.h"
 #include "reprojection.h"
 
 namespace estara {
@@ -43,6 +44,7 @@ struct FrameContext {
     std::span<const std::vector<glm::vec3>> face_normals;  ///< by object
     std::span<const std::vector<glm::vec3>> tangents;  ///< by object: face_tangent()s, if needed
     std::span<const glm::vec2> pattern;
+    PlaceMoments pattern_moments;
     FrameSettings settings;
     const Reprojection* reuse;  ///< null: every sample is a new ray
 };
@@ -52,14 +54,7 @@ struct FrameContext {
 /// does arithmetic is wide. render/README.md tells the order of what happens to a sample.
 class TileRenderer {
 public:
-    static constexpr int width = 32, height = 16;
-    /// A sample in each pixel of a tile fills one batch of a shader.
     static constexpr int capacity = batch_capacity;
-    static_assert(width * height == capacity);
-
-    /// Tiles across and down an image of so many pixels.
-    static int columns(int pixels) noexcept { return (pixels - 1) / width + 1; }
-    static int rows(int pixels) noexcept { return (pixels - 1) / height + 1; }
 
     /// Renders the pixels from `corner` on and writes them to the film.
     /// @param found  what the cache is to be given of this tile; not touched without reuse
@@ -77,6 +72,15 @@ private:
         int first, last;
         bool recalled;
     };
+    /// What the cache has for a sample of a tile.
+    struct Listed {
+        RayId id;
+        const float* record = nullptr;  ///< null: nothing
+        int instance = 0;
+        bool was_hidden = false, at_outline = false;
+        bool seen = false;  ///< the sample's own ray meets the surface that the point lies on
+        int own = -1;       ///< of m_own_hits: what that ray meets; -1: it has not been traced
+    };
     /// Points of the cache that may stand in for samples of a pass, ordered by instance.
     struct alignas(64) Candidates {
         int pixel[capacity];
@@ -85,7 +89,9 @@ private:
         int was_hidden[capacity];
         int was_front[capacity];  ///< -1: seen from any side
         Planes P_object, Ng_object;
-        int usable[capacity];  ///< 1: seen from the side from which it was shaded
+        int usable[capacity];   ///< 1: seen from the side from which it was shaded
+        int seen[capacity];     ///< 1: nothing hides it, without a ray of its own
+        int blocked[capacity];  ///< 1: something hides it
     };
     /// The samples of a pass, ordered by group.
     struct alignas(64) Samples {
@@ -100,6 +106,7 @@ private:
         int baked_E[capacity];  ///< 1: E was looked up or recalled, shadows and all
         int kept[capacity];     ///< 1: so is which lights are visible
         int age[capacity];      ///< frames since the point was found; -1: a new ray
+        Plane x, y;             ///< of recalled points: place from the pixel's centre, pixels
         Planes Ci;              ///< added up light by light
     };
     /// One light as it reaches the samples.
@@ -116,15 +123,27 @@ private:
         Plane depth;
         int hits[capacity];
         int recalled[capacity], age[capacity], occluded[capacity];
+        Planes color_x, color_y;  ///< color, times the sample's place from the pixel's centre
+        Plane hit_x, hit_y;       ///< sums of these places
+        Plane moved[5];  ///< what recalled points add to the pattern's sums of x, y, xx, xy, yy
     };
 
-    void clear_sums(const Aovs& wanted);
+    void clear_sums(const FrameContext& frame);
     void list_pixels(const FrameContext& frame, const glm::ivec2& corner);
+    void list_points(const FrameContext& frame, const glm::ivec2& corner);
     void recall(const FrameContext& frame, int sample);
     void list_candidates(const FrameContext& frame, int sample);
     void aim_at_candidates(const FrameContext& frame);
+    void trace_own_rays(const FrameContext& frame);
+    bool lies_on(const FrameContext& frame, const Listed& point, const Hit& hit,
+                 const glm::vec3& P) const;
+    const Hit* own_hit(const FrameContext& frame, int sample, std::size_t pixel) const {
+        if (frame.reuse == nullptr) return nullptr;
+        const int own = m_listed[std::size_t(sample * capacity + m_numbers[pixel])].own;
+        return own < 0 ? nullptr : &m_own_hits[std::size_t(own)];
+    }
     void take_visible(const FrameContext& frame);
-    void trace(const FrameContext& frame, const glm::vec2& offset);
+    void trace(const FrameContext& frame, int sample);
     void group_by_instance(const FrameContext& frame);
     int sort_by_instance(const FrameContext& frame, const std::uint32_t* instances, int count,
                          std::vector<Group>& groups, int* order);
@@ -136,6 +155,7 @@ private:
     void keep_light(const FrameContext& frame, NewRecords& found);
     void take_normals(const FrameContext& frame, const Group& group);
     void turn_directions(const FrameContext& frame, const Group& group);
+    void place_in_pixels(const FrameContext& frame, const Group& group);
     void place_in_world(const FrameContext& frame, const Group& group);
     void interpolate(const FrameContext& frame, const Group& group);
     MeshPoint mesh_point_of(const FrameContext& frame, const Group& group, int j) const;
@@ -152,12 +172,15 @@ private:
     void add_light();
     void close(const FrameContext& frame);
     void view(const FrameContext& frame, bool lit, Planes& Ci);
-    void accumulate(const FrameContext& frame);
+    void accumulate(const FrameContext& frame, const glm::vec2& offset);
+    void accumulate_places(const glm::vec2& own);
+    PlaceMoments places_of(const FrameContext& frame, int pixel) const;
     void resolve(const FrameContext& frame, Film& film);
     const ObjectShading& shading_of(const FrameContext& frame, const Group& group) const;
     ObjectCost& cost_of(const FrameContext& frame, const Group& group);
 
     std::vector<glm::ivec2> m_pixels;
+    std::vector<int> m_numbers;  ///< of m_pixels in the tile: tiles may reach beyond the image
     PixelSums m_sums;
     int m_needs_ray[capacity];  ///< by pixel; 1 or 0
     int m_ray_pixel[capacity];  ///< of each primary ray
@@ -167,12 +190,16 @@ private:
     HitBatch m_hits;
     std::vector<int> m_group_of_instance;  ///< -1: not hit in this tile
     std::vector<Group> m_groups;
-    int m_order[capacity];  ///< hit of each sample, or candidate of a recalled one
-    int m_count = 0;        ///< samples
+    int m_order[capacity];         ///< hit of each sample, or candidate of a recalled one
+    int m_count = 0;               ///< samples
+    std::vector<Listed> m_listed;  ///< by sample and number of the pixel in the tile
+    std::vector<Hit> m_own_hits;
+    OutlineFinder m_outlines;
     Candidates m_candidates;
     std::vector<Group> m_candidate_groups;
     int m_candidate_count = 0;
-    int m_candidate_order[capacity];     ///< of the visible ones
+    int m_candidate_order[capacity];  ///< of the visible ones
+    int m_candidate_of_ray[capacity];
     std::vector<std::uint32_t> m_sides;  ///< RecordLayout's words, by sample in each
     std::ptrdiff_t m_row[capacity];      ///< of a sample in NewRecords::floats, or -1
     Samples m_samples;

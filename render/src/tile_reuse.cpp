@@ -8,6 +8,127 @@
 
 namespace estara {
 
+/// Lists the points that the cache has for a tile's samples, and finds the outlines between them.
+void TileRenderer::list_points(const FrameContext& frame, const glm::ivec2& corner) {
+    const Stopwatch time;
+    const Reprojection& reuse = *frame.reuse;
+    const ReuseCache& cache = reuse.cache();
+    const SampleStrata& strata = reuse.strata();
+    const glm::ivec2 size =
+        glm::min(glm::ivec2(TileGrid::width, TileGrid::height),
+                 glm::ivec2(frame.settings.width, frame.settings.height) - corner);
+    m_listed.resize(std::size_t(capacity * strata.count()));
+    // A row has a cell for each rectangle of its pixels.
+    const int across = size.x * strata.columns(), down = size.y * strata.rows();
+    thread_local std::vector<Listed*> row, before;
+    thread_local std::vector<std::uint8_t> outline;
+    row.resize(std::size_t(across));
+    outline.resize(std::size_t(across));
+    const auto note = [&](const std::vector<Listed*>& of) {
+        for (std::size_t x = 0; x < of.size(); ++x) of[x]->at_outline = outline[x] != 0;
+    };
+    m_outlines.start(across);
+    for (int y = 0; y < down; ++y) {
+        // Records lie all over memory: those of a row are asked for before any is used.
+        for (int x = 0; x < across; ++x) {
+            const glm::ivec2 pixel(x / strata.columns(), y / strata.rows());
+            const int sample =
+                strata.sample(x % strata.columns() + y % strata.rows() * strata.columns());
+            Listed& one =
+                m_listed[std::size_t(sample * capacity + TileGrid::number(pixel.x, pixel.y))];
+            row[std::size_t(x)] = &one;
+            const Reprojection::Candidate found =
+                reuse.candidate(corner.x + pixel.x, corner.y + pixel.y, sample);
+            one = {};
+            if (!found.exists) continue;
+            const ReuseCache::Page& page = cache.page(found.id.page());
+            one.id = found.id;
+            one.record = page.record(found.id.index());
+            one.instance = page.instance;
+            one.was_hidden = found.was_hidden;
+            __builtin_prefetch(one.record);
+        }
+        for (int x = 0; x < across; ++x) {
+            const Listed& one = *row[std::size_t(x)];
+            if (one.record == nullptr) continue;
+            constexpr int P = RecordLayout::P, Ng = RecordLayout::Ng;
+            const float* const r = one.record;
+            m_outlines.set(x, one.instance, {r[P], r[P + 1], r[P + 2]},
+                           {r[Ng], r[Ng + 1], r[Ng + 2]});
+        }
+        m_outlines.next(outline.data());
+        if (y > 0) note(before);
+        std::swap(row, before);
+        row.resize(std::size_t(across));
+    }
+    m_outlines.finish(outline.data());
+    note(before);
+    const double seconds = time.seconds();
+    statistics.evaluation_seconds += seconds;
+    statistics.reuse.listing_seconds += seconds;
+}
+
+/// Traces the rays of all samples of a tile that have no point, or one at an outline.
+///
+/// At an outline the sample's own ray tells which surface it sees: how much of a pixel each surface
+/// takes is for the pattern to say, or points of the one that has more of them, or older ones,
+/// would win too often. All passes' rays together, pixel by pixel: they stay close to each other.
+void TileRenderer::trace_own_rays(const FrameContext& frame) {
+    const Stopwatch time;
+    ReuseCache& cache = frame.reuse->cache();
+    Listed* waiting[capacity];
+    m_own_hits.clear();
+    int count = 0;
+    const auto trace_some = [&] {
+        frame.camera.primary_rays(m_x, m_y, count, m_rays);
+        frame.rays.intersect(m_rays, m_hits);
+        statistics.primary_rays += std::uint64_t(count);
+        for (int r = 0; r < count; ++r) {
+            Listed& point = *waiting[r];
+            const Hit hit{m_hits.instance[r], m_hits.triangle[r], m_hits.b1[r], m_hits.b2[r],
+                          m_hits.t[r]};
+            point.own = int(m_own_hits.size());
+            m_own_hits.push_back(hit);
+            if (point.record == nullptr) continue;
+            const glm::vec3 P = at(m_rays.origin, r) + hit.t * at(m_rays.direction, r);
+            point.seen = lies_on(frame, point, hit, P);
+            if (!point.seen && !point.was_hidden) cache.set_hidden(point.id, true);
+        }
+        count = 0;
+    };
+    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
+        for (std::size_t sample = 0; sample < frame.pattern.size(); ++sample) {
+            Listed& point = m_listed[sample * capacity + std::size_t(m_numbers[i])];
+            if (point.record != nullptr && !point.at_outline) continue;
+            m_x[count] = float(m_pixels[i].x) + frame.pattern[sample].x;
+            m_y[count] = float(m_pixels[i].y) + frame.pattern[sample].y;
+            waiting[count++] = &point;
+            if (count == capacity) trace_some();
+        }
+    }
+    if (count > 0) trace_some();
+    statistics.ray_seconds += time.seconds();
+}
+
+/// Whether a point of the cache lies on the surface that a ray has met beside it.
+/// @param P  of the hit, world space
+bool TileRenderer::lies_on(const FrameContext& frame, const Listed& point, const Hit& hit,
+                           const glm::vec3& P) const {
+    constexpr float least = 0.8f;  // cosine between normals
+    constexpr float most = 0.25f;  // from the point's plane, in widths of a pixel
+    if (hit.instance != std::uint32_t(point.instance)) return false;
+    const PosedInstance& instance = frame.instances[hit.instance];
+    const float* const r = point.record;
+    constexpr int N = RecordLayout::Ng;
+    const glm::vec3 n(r[N], r[N + 1], r[N + 2]), P_object(r[0], r[1], r[2]);
+    const glm::vec3& Ng = frame.face_normals[std::size_t(instance.object)][hit.triangle];
+    const glm::vec3 way = P - glm::vec3(instance.world_from_object * glm::vec4(P_object, 1.0f));
+    const glm::vec3 n_world = instance.world_from_normal * n;
+    const float width = most * frame.camera.pixel_angle() * hit.t;
+    const float off = glm::dot(n_world, way);
+    return glm::dot(n, Ng) > least && off * off < width * width * glm::dot(n_world, n_world);
+}
+
 /// Finds out which samples of a pass are recalled; the others need a ray.
 void TileRenderer::recall(const FrameContext& frame, int sample) {
     const Stopwatch time;
@@ -17,8 +138,12 @@ void TileRenderer::recall(const FrameContext& frame, int sample) {
     const Stopwatch rays;
     frame.rays.occluded(m_rays, m_blocked.data());
     statistics.ray_seconds += rays.seconds();
-    statistics.reuse.rays += std::uint64_t(m_candidate_count);
+    statistics.reuse.rays += std::uint64_t(m_rays.size);
     const Stopwatch taking;
+    std::fill_n(m_candidates.blocked, m_candidate_count, 0);
+    for (int r = 0; r < m_rays.size; ++r) {
+        m_candidates.blocked[m_candidate_of_ray[r]] = m_blocked[std::size_t(r)];
+    }
     take_visible(frame);
     listing += taking.seconds();
     statistics.evaluation_seconds += listing;
@@ -26,46 +151,42 @@ void TileRenderer::recall(const FrameContext& frame, int sample) {
 }
 
 void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
-    struct Listed {
-        Reprojection::Candidate candidate[capacity];
-        std::uint32_t instance[capacity];
-        int pixel[capacity], order[capacity];
-    };
-    thread_local Listed listed;
+    thread_local std::uint32_t instance[capacity];
+    thread_local int pixel[capacity], order[capacity];
     const ReuseCache& cache = frame.reuse->cache();
+    const Listed* const listed = m_listed.data() + std::size_t(sample * capacity);
     int count = 0;
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        const Reprojection::Candidate found =
-            frame.reuse->candidate(m_pixels[i].x, m_pixels[i].y, sample);
-        m_needs_ray[i] = found.exists ? 0 : 1;
-        if (!found.exists) continue;
-        __builtin_prefetch(&cache.page(found.id.page()));
-        listed.candidate[count] = found;
-        listed.pixel[count++] = int(i);
+        const Listed& one = listed[m_numbers[i]];
+        m_needs_ray[i] = 1;
+        if (one.record == nullptr) {
+            ++statistics.reuse.misses;
+            continue;
+        }
+        if (one.at_outline && !one.seen) {
+            ++statistics.reuse.beside;
+            continue;
+        }
+        __builtin_prefetch(one.record);
+        instance[count] = std::uint32_t(one.instance);
+        pixel[count++] = int(i);
     }
-    for (int c = 0; c < count; ++c) {
-        const RayId id = listed.candidate[c].id;
-        const ReuseCache::Page& page = cache.page(id.page());
-        __builtin_prefetch(page.record(id.index()));
-        listed.instance[c] = std::uint32_t(page.instance);
-    }
-    statistics.reuse.misses += m_pixels.size() - std::size_t(count);
     m_candidate_groups.clear();
-    m_candidate_count =
-        sort_by_instance(frame, listed.instance, count, m_candidate_groups, listed.order);
+    m_candidate_count = sort_by_instance(frame, instance, count, m_candidate_groups, order);
     for (const Group& group : m_candidate_groups) {
         const RecordLayout layout = cache.layout(int(group.instance));
         for (int c = group.first; c < group.last; ++c) {
-            const int from = listed.order[c];
-            const RayId id = listed.candidate[from].id;
-            const float* const record = cache.page(id.page()).record(id.index());
-            m_candidates.pixel[c] = listed.pixel[from];
-            m_candidates.id[c] = id;
+            const int i = pixel[order[c]];
+            const Listed& one = listed[m_numbers[std::size_t(i)]];
+            const float* const record = one.record;
+            m_candidates.pixel[c] = i;
+            m_candidates.id[c] = one.id;
             m_candidates.record[c] = record;
-            m_candidates.was_hidden[c] = listed.candidate[from].was_hidden ? 1 : 0;
+            m_candidates.was_hidden[c] = one.was_hidden ? 1 : 0;
             m_candidates.was_front[c] =
                 layout.is_lit() ? int(std::bit_cast<std::uint32_t>(record[layout.sides()]) & 1u)
                                 : -1;
+            m_candidates.seen[c] = one.seen ? 1 : 0;
             put(m_candidates.P_object, c, {record[0], record[1], record[2]});
             constexpr int Ng = RecordLayout::Ng;
             put(m_candidates.Ng_object, c, {record[Ng], record[Ng + 1], record[Ng + 2]});
@@ -73,10 +194,10 @@ void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
     }
 }
 
-/// A ray from every candidate to the eye. It starts off the surface by the bound of SurfaceOffset,
-/// on the side of the eye, so the surface itself is not met and what is near is not skipped.
+/// A ray to the eye from every candidate that is not known to be seen. It starts off the surface by
+/// the bound of SurfaceOffset, on the side of the eye, so the surface itself is not met and what is
+/// near is not skipped.
 void TileRenderer::aim_at_candidates(const FrameContext& frame) {
-    m_rays.size = m_candidate_count;
     for (const Group& group : m_candidate_groups) {
         const PosedInstance& instance = frame.instances[group.instance];
         wide([=, candidates = &m_candidates, rays = &m_rays, eye = frame.camera.eye(),
@@ -103,6 +224,17 @@ void TileRenderer::aim_at_candidates(const FrameContext& frame) {
             }
         });
     }
+    m_rays.size = 0;
+    for (int c = 0; c < m_candidate_count; ++c) {
+        if (m_candidates.seen[c] != 0) continue;
+        const int r = m_rays.size++;
+        m_candidate_of_ray[r] = c;
+        if (r == c) continue;
+        put(m_rays.origin, r, at(m_rays.origin, c));
+        put(m_rays.direction, r, at(m_rays.direction, c));
+        m_rays.tmin[r] = 0.0f;
+        m_rays.tmax[r] = 1.0f;
+    }
 }
 
 /// Keeps the candidates that nothing hides, in their order.
@@ -113,17 +245,17 @@ void TileRenderer::take_visible(const FrameContext& frame) {
         const int first = taken;
         for (int c = group.first; c < group.last; ++c) {
             const int pixel = m_candidates.pixel[c];
-            const bool usable = m_candidates.usable[c] != 0, blocked = m_blocked[std::size_t(c)];
+            const bool usable = m_candidates.usable[c] != 0, blocked = m_candidates.blocked[c] != 0;
             // From the wrong side it is of as little use: both yield to others next time.
             const bool hidden = blocked || !usable;
             if (hidden != (m_candidates.was_hidden[c] != 0)) {
                 cache.set_hidden(m_candidates.id[c], hidden);
             }
             if (usable && !blocked) {
+                m_needs_ray[pixel] = 0;
                 m_candidate_order[taken++] = c;
                 continue;
             }
-            m_needs_ray[pixel] = 1;
             m_sums.occluded[pixel] += usable ? 1 : 0;
             ++(usable ? statistics.reuse.occluded : statistics.reuse.turned);
         }
@@ -177,6 +309,7 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
         }
     }
     place_in_world(frame, group);
+    place_in_pixels(frame, group);
     turn_normals(frame.instances[group.instance], group);
     turn_directions(frame, group);
     if (lit == 0) statistics.lit += std::uint64_t(group.last - group.first);
@@ -185,6 +318,19 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
     ObjectCost& cost = cost_of(frame, group);
     cost.recall += seconds;
     cost.recalled += std::uint64_t(group.last - group.first);
+}
+
+/// Where recalled points lie in their pixels.
+void TileRenderer::place_in_pixels(const FrameContext& frame, const Group& group) {
+    wide([samples = &m_samples, group, pose = frame.camera.pose(), width = frame.settings.width,
+          height = frame.settings.height]() ESTARA_LOOP {
+#pragma GCC ivdep
+        for (int j = group.first; j < group.last; ++j) {
+            const glm::vec3 place = pose.project(at(samples->P, j), width, height);
+            samples->x[j] = place.x - std::floor(place.x) - 0.5f;
+            samples->y[j] = place.y - std::floor(place.y) - 0.5f;
+        }
+    });
 }
 
 /// The records of new hits, but for their light.

@@ -49,6 +49,14 @@ Material plastic_in(const char* name, const dvec3& Cs, double Ka = 0.35, double 
              {"Cs", {Cs.r, Cs.g, Cs.b}}},
             Cs};
 }
+/// What gives light of its own: so many times the ambient light. No lamp shines upon it, or what is
+/// a hand's breadth from a bulb would be a thousand times white.
+Material glowing(const char* name, const dvec3& color, double times) {
+    return {name,
+            "plastic",
+            {{"Ka", {times}}, {"Kd", {0.0}}, {"Ks", {0.0}}, {"Cs", {color.r, color.g, color.b}}},
+            color};
+}
 Material wood_in(const char* name, const dvec3& light, const dvec3& dark, double ringscale,
                  double Ks = 0.25) {
     return {name,
@@ -381,12 +389,11 @@ void add_courtyard(Room& room) {
         room.put("tree " + std::to_string(i), foliage, i % 2 ? cone : ball,
                  place + vec3(0, i % 2 ? 1.9f : 1.05f, 0));
     }
-    // The sky gives its own light: ambient, many times over.
     const auto sky = [](double u, double v) {
         const double angle = (80 - 160 * u) * double(degree);
         return dvec3(3.0 + 22.0 * std::cos(angle), -1.0 + 9.5 * v, -2.0 + 22.0 * std::sin(angle));
     };
-    room.put("sky", plastic_in("sky", {0.50, 0.70, 0.98}, 2.2),
+    room.put("sky", glowing("sky", {0.50, 0.70, 0.98}, 2.2),
              tessellate(sky, {60, 8}, {.u = false, .v = false}), vec3(0));
 }
 
@@ -444,10 +451,8 @@ void add_fireplace(Room& room) {
     const dvec2 flame[]{{0, 0},        {0.05, 0.0},  {0.075, 0.06}, {0.06, 0.15},
                         {0.025, 0.25}, {0.01, 0.32}, {0, 0.36}};
     const Mesh tongue = lathe(flame, {40, 50});
-    // No lamp shines upon flames.
-    Material flames[]{plastic_in("flame", {1.0, 0.42, 0.05}, 2.6),
-                      plastic_in("outer flame", {1.0, 0.2, 0.015}, 2.6)};
-    for (Material& kind : flames) kind.params[1].second = {0.0};
+    const Material flames[]{glowing("flame", {1.0, 0.42, 0.05}, 2.6),
+                            glowing("outer flame", {1.0, 0.2, 0.015}, 2.6)};
     for (int i = 0; i < 5; ++i) {
         const float size = 0.6f + 0.5f * scatter(unsigned(i) + 7);
         room.put(
@@ -628,8 +633,7 @@ void add_chair(Room& room, const std::string& name, const vec3& place, float fac
     room.put(name + " rung", oak_dark, rung, at({0, 0.17f, 0.18f}), turn, 2.5f);
 }
 
-/// A shade around a bulb, open above and below; it seems to glow because ambient light counts more
-/// on it.
+/// A shade around a bulb, open above and below.
 Mesh lamp_shade(double below, double above, double tall) {
     const dvec2 profile[]{{below - 0.002, 0},     {below, 0},
                           {below, 0.004},         {above, tall - 0.004},
@@ -641,7 +645,7 @@ Mesh lamp_shade(double below, double above, double tall) {
 }
 
 const Material linen = plastic_in("linen", {0.72, 0.62, 0.46});
-const Material lit_shade = plastic_in("lit shade", {0.95, 0.68, 0.36}, 2.0);
+const Material lit_shade = glowing("lit shade", {0.95, 0.68, 0.36}, 2.0);
 
 void add_lamps(Room& room, const vec3& floor_lamp, const vec3& table_lamp) {
     const dvec2 stand[]{{0, 0},        {0.14, 0},    {0.15, 0.004}, {0.13, 0.02}, {0.03, 0.035},
@@ -664,7 +668,8 @@ void add_pendant(Room& room, const vec3& bulb) {
                        {0.22, 0.005},  {0.234, -0.004}, {0.238, -0.003}, {0.235, 0.0},
                        {0.22, 0.01},   {0.14, 0.065},   {0.05, 0.10},    {0.03, 0.118},
                        {0.010, 0.12}};
-    room.put("pendant dish", brass, lathe(dish, {120, 70}), bulb);
+    room.put("pendant dish", glowing("lit brass", {0.85, 0.55, 0.22}, 1.3), lathe(dish, {120, 70}),
+             bulb);
     const dvec2 rod[]{{0, 0.02},    {0.016, 0.02}, {0.018, 0.03}, {0.018, 0.12}, {0.006, 0.15},
                       {0.005, 0.2}, {0.005, 0.6},  {0.03, 0.74},  {0.05, 0.775}, {0, 0.779}};
     room.put("pendant rod", brass, lathe(rod, {40, 60}), bulb);
@@ -795,8 +800,8 @@ void add_lights(GlbBuilder& out, const vec3& floor_lamp, const vec3& pendant) {
                  {floor_lamp + vec3(0, 1.56f, 0)});
     out.add_lamp({"pendant bulb", "point", dvec3(1.0, 0.80, 0.58), candela_for(0.55, 2.5)},
                  {pendant - vec3(0, 0.035f, 0)});
-    out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.75, 1.5)},
-                 {vec3(fire_x, 0.70f, breast_front - 0.06f)});
+    out.add_lamp({"fire light", "point", dvec3(1.0, 0.45, 0.14), candela_for(0.40, 1.5)},
+                 {vec3(fire_x, 0.50f, breast_front + 0.30f)});
     out.set_ambient(dvec3(0.58, 0.60, 0.65));
 }
 

@@ -38,6 +38,7 @@ public:
     void sights(const float* P, int first, int last, ViewDirections& V,
                 float* distance) const noexcept;
 
+    const PinholePose& pose() const noexcept { return m_pose; }
     const glm::vec3& eye() const noexcept { return m_pose.eye; }
 
     /// Angle between neighbouring pixels at the image centre, radians.

@@ -50,7 +50,8 @@ struct ReuseCounts {
     std::uint64_t misses = 0;         ///< samples without a point
     std::uint64_t occluded = 0;       ///< with one that something hides
     std::uint64_t turned = 0;         ///< with one that is seen from its other side
-    std::uint64_t refilled = 0;       ///< rays traced instead: misses, occluded and turned
+    std::uint64_t beside = 0;         ///< with one at an outline, of a surface that it does not see
+    std::uint64_t refilled = 0;       ///< the last four: what the sample's own ray meets is shaded
     std::uint64_t kept = 0;           ///< points taken into the cache
     std::uint64_t refused = 0;        ///< points for which all of it was in use
     std::uint64_t evicted = 0;        ///< points that made room, the least recently used

@@ -70,6 +70,7 @@ struct RayId {
 class ReuseCache {
 public:
     static constexpr std::size_t page_bytes = 16384;
+    static constexpr int page_bits = 27;  ///< of a page's number
     /// Frames that a window can have, at most: what a RayId can tell apart.
     static constexpr int longest_window = (1 << RayId::born_bits) - 1;
 
@@ -92,7 +93,7 @@ public:
 
     /// A page of records, one after the other, and beside them as structure of arrays what every
     /// frame reads of every record.
-    struct Page {
+    struct alignas(64) Page {
         int instance = -1;  ///< -1: free
         int size = 0;       ///< records in it
         int born = 0, used = 0;

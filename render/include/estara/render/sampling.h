@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "estara/shaders/kernel.h"
@@ -21,6 +22,20 @@ namespace estara {
 /// @param seed  0: not shifted; other seeds give other shifts (never of a single sample)
 std::vector<glm::vec2> sample_pattern(int spp, std::uint32_t seed);
 
+/// Means of samples' places x, y from the pixel's centre and of their products.
+struct PlaceMoments {
+    glm::vec2 mean{0.0f};
+    float xx = 0.0f, xy = 0.0f, yy = 0.0f;
+};
+PlaceMoments moments_of(std::span<const glm::vec2> pattern);
+
+/// How the weights of n samples must lean to make their weighted mean place `target`: sample i at
+/// x_i counts (1 - g . (x_i - mean)) / n, with g = S^-1 (mean - target) and S their covariance. The
+/// weights' sum is 1, and a pixel of them is exact for colours that are linear in it (the
+/// regression estimator: Cochran, "Sampling Techniques", 1977, chapter 7). g is cut short where a
+/// weight would be negative, and 0 for less than a thousandth of a pixel, which is rounding.
+glm::vec2 slant(const PlaceMoments& samples, const glm::vec2& target) noexcept;
+
 /// The pixel divided into as many rectangles of equal area as it has samples, one sample of the
 /// pattern in each: where a point that is not of the pattern stands in for one of its samples.
 ///
@@ -31,6 +46,7 @@ class SampleStrata {
 public:
     SampleStrata(int spp, std::uint32_t seed);
 
+    int count() const noexcept { return m_columns * m_rows; }
     int columns() const noexcept { return m_columns; }
     int rows() const noexcept { return m_rows; }
     glm::vec2 shift() const noexcept { return m_shift; }
@@ -40,13 +56,16 @@ public:
         const int c = int((moved - std::floor(moved)) * float(cells));
         return c < cells ? c : cells - 1;  // rounding
     }
+    /// The rectangle of a sample of the pattern: its column and row.
+    glm::ivec2 place(int sample) const noexcept { return m_place[std::size_t(sample)]; }
     /// The sample of the pattern in a rectangle, given as column + columns * row.
     int sample(int rectangle) const noexcept { return m_sample[std::size_t(rectangle)]; }
 
 private:
     int m_columns, m_rows;
     glm::vec2 m_shift;
-    std::vector<int> m_sample;  ///< by rectangle, row by row
+    std::vector<int> m_sample;        ///< by rectangle, row by row
+    std::vector<glm::ivec2> m_place;  ///< by sample
 };
 
 }  // namespace estara

@@ -1,0 +1,58 @@
+// Where neighbouring points of a picture lie on different surfaces.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace estara {
+
+/// Finds the outlines in a raster of points, some of them not known, row after row.
+///
+/// A cell is at an outline if its point and that of one of its four neighbours are of different
+/// instances, or seem to be of different parts of one: their normals lie more than 37 degrees
+/// apart, or the way from one to the other more than 18 degrees off the plane of one. Next to a
+/// cell without a point all others are at an outline; what is beyond the raster is taken to be
+/// alike.
+class OutlineFinder {
+public:
+    static constexpr int none = -1;  ///< instance of a cell without a point
+
+    /// Begins a raster, and its first row: no cell has a point yet.
+    void start(int width);
+    /// @param P, Ng  object space of the instance; Ng of unit length
+    void set(int x, int instance, const glm::vec3& P, const glm::vec3& Ng) noexcept {
+        Row& row = m_rows[m_now];
+        const auto i = std::size_t(x + 1);
+        row.instance[i] = instance;
+        for (int c = 0; c < 3; ++c) {
+            row.P[std::size_t(c)][i] = P[c];
+            row.Ng[std::size_t(c)][i] = Ng[c];
+        }
+    }
+    /// Ends a row and begins the next.
+    /// @param above  by cell of the row before, if there is one: 1 at an outline
+    void next(std::uint8_t* above);
+    /// After next() of the last row: tells of that row.
+    void finish(std::uint8_t* last);
+
+private:
+    static constexpr int beyond = -2;
+    /// With a cell beyond on either side.
+    struct Row {
+        std::vector<std::int32_t> instance;
+        std::array<std::vector<float>, 3> P, Ng;
+        std::vector<std::int32_t> right, below;  ///< 1: differs from that neighbour
+    };
+
+    void tell(const Row& row, const Row& above, std::uint8_t* outline) const;
+
+    int m_width = 0;
+    std::size_t m_now = 0;  ///< of m_rows; the rows before it go around
+    bool m_first = true;
+    std::array<Row, 3> m_rows;
+};
+
+}  // namespace estara
