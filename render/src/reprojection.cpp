@@ -47,7 +47,7 @@ Reprojection::Reprojection(const FrameSettings& settings)
       m_height(settings.height),
       m_tiles(settings.width, settings.height),
       m_strata(settings.spp, settings.seed),
-      m_tile_slots(sample_stride * std::size_t(settings.spp)),
+      m_tile_slots(2 * sample_stride * std::size_t(settings.spp)),
       m_slots(new std::uint64_t[m_tile_slots * std::size_t(m_tiles.count())]) {}
 
 void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
@@ -171,7 +171,7 @@ void Reprojection::serve_tile(int tile, Sorting& sorting) {
 
     std::uint64_t* const slots = m_slots.get() + std::size_t(tile) * m_tile_slots;
     const auto count = std::size_t(m_strata.count());
-    sorting.slots.resize(count);
+    sorting.slots.resize(2 * count);
     for (std::size_t i = 0; i < batch_capacity; ++i) {
         std::fill(sorting.slots.begin(), sorting.slots.end(), none);
         if (first[i] < first[i + 1]) {
@@ -179,13 +179,15 @@ void Reprojection::serve_tile(int tile, Sorting& sorting) {
                         sorting.slots.data(), sorting.left_over);
         }
         for (std::size_t s = 0; s < count; ++s) {
-            slots[std::size_t(m_strata.sample(int(s))) * sample_stride + i] = sorting.slots[s];
+            const std::size_t sample = std::size_t(m_strata.sample(int(s)));
+            slots[sample * sample_stride + i] = sorting.slots[s];
+            slots[(count + sample) * sample_stride + i] = sorting.slots[count + s];
         }
     }
     count_serving(slots);
 }
 
-/// @param slots  by rectangle, all of them none
+/// @param slots  by rectangle, then the seconds; all of them none
 void Reprojection::serve_pixel(std::span<const std::uint64_t> fallen, std::uint64_t* slots,
                                std::vector<LeftOver>& left_over) const {
     const auto id = [&](std::uint64_t bits) {
@@ -217,6 +219,7 @@ void Reprojection::serve_pixel(std::span<const std::uint64_t> fallen, std::uint6
 }
 
 /// Gives points that their rectangles have not taken to empty ones beside them, the oldest first.
+/// Of the rest the oldest of each rectangle is its second.
 void Reprojection::spread(std::vector<LeftOver>& points, std::uint64_t* slots) const {
     std::sort(points.begin(), points.end());
     const int columns = m_strata.columns(), count = m_strata.count();
@@ -229,6 +232,8 @@ void Reprojection::spread(std::vector<LeftOver>& points, std::uint64_t* slots) c
         };
         if (take(column > 0, s - 1) || take(column + 1 < columns, s + 1)) continue;
         if (take(s >= columns, s - columns) || take(s + columns < count, s + columns)) continue;
+        std::uint64_t& second = slots[count + s];
+        second = std::min(second, point.id);
     }
 }
 
@@ -240,7 +245,7 @@ void Reprojection::count_serving(const std::uint64_t* slots) {
         if (run == 0) return;
         std::atomic_ref(m_serving[current]).fetch_add(run, std::memory_order_relaxed);
     };
-    for (int sample = 0; sample < m_strata.count(); ++sample) {
+    for (int sample = 0; sample < 2 * m_strata.count(); ++sample) {
         const std::uint64_t* const some = slots + std::size_t(sample) * sample_stride;
         for (std::size_t i = 0; i < batch_capacity; ++i) {
             if (some[i] == none) continue;

@@ -42,7 +42,8 @@ struct NewRecords {
 /// spread as it was, but no longer has one point in each rectangle.) A point that was hidden when
 /// it was last looked at serves only in its own rectangle, and only if no other does.
 ///
-/// Each sample has so at most one point: a pixel is the same box filter as it is without reuse.
+/// Each sample has so at most one point that stands for it: a pixel is the same box filter as it is
+/// without reuse. If the rectangle has a second point, which serves nowhere else, it is named too.
 class Reprojection {
 public:
     explicit Reprojection(const FrameSettings& settings);
@@ -54,16 +55,20 @@ public:
     /// A point that may stand in for a sample; whether it can be seen is not known.
     struct Candidate {
         RayId id;
-        bool exists, was_hidden;
+        RayId second;  ///< of the same rectangle
+        bool exists, was_hidden, has_second;
     };
     /// @param sample  of the pattern
     Candidate candidate(int x, int y, int sample) const noexcept {
-        const std::uint64_t slot =
-            m_slots[std::size_t(TileGrid::tile(x, y, m_tiles.columns)) * m_tile_slots +
-                    std::size_t(sample) * sample_stride + std::size_t(TileGrid::number(x, y))];
+        const std::uint64_t* const slots =
+            m_slots.get() + std::size_t(TileGrid::tile(x, y, m_tiles.columns)) * m_tile_slots +
+            std::size_t(TileGrid::number(x, y));
+        const std::uint64_t slot = slots[std::size_t(sample) * sample_stride];
         Candidate found;
+        found.second.bits = slots[std::size_t(m_strata.count() + sample) * sample_stride];
         found.id.bits = slot & ~hidden;
         found.exists = slot != none;
+        found.has_second = found.second.bits != none;
         found.was_hidden = (slot & hidden) != 0;
         return found;
     }

@@ -76,6 +76,7 @@ private:
     struct Listed {
         RayId id;
         const float* record = nullptr;  ///< null: nothing
+        const float* second = nullptr;  ///< of another point in the same rectangle, or null
         int instance = 0;
         bool was_hidden = false, at_outline = false;
         bool seen = false;  ///< the sample's own ray meets the surface that the point lies on
@@ -86,6 +87,7 @@ private:
         int pixel[capacity];
         RayId id[capacity];
         const float* record[capacity];
+        const float* second[capacity];  ///< null: none
         int was_hidden[capacity];
         int was_front[capacity];  ///< -1: seen from any side
         Planes P_object, Ng_object;
@@ -155,6 +157,7 @@ private:
     void keep_light(const FrameContext& frame, NewRecords& found);
     void take_normals(const FrameContext& frame, const Group& group);
     void turn_directions(const FrameContext& frame, const Group& group);
+    void average_seconds(const FrameContext& frame, const Group& group, const RecordLayout& layout);
     void place_in_pixels(const FrameContext& frame, const Group& group);
     void place_in_world(const FrameContext& frame, const Group& group);
     void interpolate(const FrameContext& frame, const Group& group);

@@ -46,6 +46,13 @@ void TileRenderer::list_points(const FrameContext& frame, const glm::ivec2& corn
             one.record = page.record(found.id.index());
             one.instance = page.instance;
             one.was_hidden = found.was_hidden;
+            if (found.has_second) {
+                const ReuseCache::Page& other = cache.page(found.second.page());
+                if (other.instance == one.instance) {
+                    one.second = other.record(found.second.index());
+                    __builtin_prefetch(one.second);
+                }
+            }
             __builtin_prefetch(one.record);
         }
         for (int x = 0; x < across; ++x) {
@@ -182,6 +189,7 @@ void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
             m_candidates.pixel[c] = i;
             m_candidates.id[c] = one.id;
             m_candidates.record[c] = record;
+            m_candidates.second[c] = one.at_outline ? nullptr : one.second;
             m_candidates.was_hidden[c] = one.was_hidden ? 1 : 0;
             m_candidates.was_front[c] =
                 layout.is_lit() ? int(std::bit_cast<std::uint32_t>(record[layout.sides()]) & 1u)
@@ -300,6 +308,7 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
                 std::bit_cast<std::uint32_t>(record[layout.sides() + w]);
         }
     }
+    average_seconds(frame, group, layout);
     const int lit = layout.is_lit() ? 1 : 0;
     std::fill(m_samples.baked_E + group.first, m_samples.baked_E + group.last, lit);
     std::fill(m_samples.kept + group.first, m_samples.kept + group.last, lit);
@@ -318,6 +327,39 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
     ObjectCost& cost = cost_of(frame, group);
     cost.recall += seconds;
     cost.recalled += std::uint64_t(group.last - group.first);
+}
+
+/// Where a rectangle has a second point, the sample is what both are on average: a pixel's noise
+/// falls, and so does what changes when one of them goes.
+void TileRenderer::average_seconds(const FrameContext& frame, const Group& group,
+                                   const RecordLayout& layout) {
+    constexpr float least = 0.8f;  // cosine between normals, as for outlines
+    const auto mean = [](float& a, float b) { a = 0.5f * (a + b); };
+    for (int j = group.first; j < group.last; ++j) {
+        const float* const second = m_candidates.second[m_order[j]];
+        if (second == nullptr) continue;
+        constexpr int P = RecordLayout::P, N = RecordLayout::Ng;
+        const glm::vec3 Ng(second[N], second[N + 1], second[N + 2]);
+        bool alike = glm::dot(Ng, at(m_samples.Ng_object, j)) > least;
+        if (layout.is_lit()) {  // from the same side
+            const auto sides = std::bit_cast<std::uint32_t>(second[layout.sides()]);
+            alike = alike && ((sides ^ m_sides[std::size_t(j)]) & 1u) == 0;
+        }
+        if (!alike) continue;
+        for (int c = 0; c < 3; ++c) mean(m_samples.surface.P[c][j], second[P + c]);
+        int plane = 0;
+        for (const ChannelInfo& channel : shading_of(frame, group).shader->info().channels) {
+            const int first = plane;
+            plane += channel.components;
+            if (channel.kind != ChannelKind::value) continue;
+            for (int k = first; k < plane; ++k) {
+                mean(m_planes[std::size_t(k * capacity + j)],
+                     second[RecordLayout::first_baked + k]);
+            }
+        }
+        if (!layout.is_lit()) continue;
+        for (int c = 0; c < 3; ++c) mean(m_samples.seen.E[c][j], second[layout.E() + c]);
+    }
 }
 
 /// Where recalled points lie in their pixels.

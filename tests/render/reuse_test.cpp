@@ -3,9 +3,11 @@
 #include <tbb/global_control.h>
 
 #include <cstring>
+#include <optional>
 
 #include "estara/render/compare.h"
 #include "estara/render/dress.h"
+#include "estara/render/flicker.h"
 #include "estara/render/frame.h"
 #include "small_scene.h"
 
@@ -94,6 +96,17 @@ Scene room() {
     return scene;
 }
 
+/// motion() of a camera that is moved by hand: it is animated for as long.
+std::vector<glm::vec2> motion_of(Scene& scene, RayScene& rays, const glm::vec3& before,
+                                 const glm::vec3& now) {
+    Track<glm::vec3>& walk = scene.nodes[1].translations;
+    walk.times = {0.0f, 1.0f};
+    walk.values = {before, now};
+    std::vector<glm::vec2> places = motion(scene, rays, 0, 0.0, 1.0, width, height);
+    walk = {};
+    return places;
+}
+
 TEST(Reuse, OfTheFirstFrameIsDirectBitByBit) {
     Scene scene = room();
     Reused reused(scene);
@@ -151,6 +164,46 @@ TEST(Reuse, OfAPlaneThatMovesSidewaysNeedsHardlyAnyRay) {
         // What comes in at the border, and points that are two rectangles from an empty one.
         EXPECT_LT(double(reused.cost.reuse.refilled), across + 0.02 * double(reused.cost.samples));
     }
+}
+
+/// What changes from frame to frame along the motion and does not in the limit of many samples; and
+/// the error itself, which a blur would raise.
+TEST(Reuse, FlickersLessThanDirectFramesDo) {
+    Scene scene = room();
+    Reused reused(scene, 1u << 26, true, 16), reference(scene, 1u << 20, true, 256);
+    RayScene rays(scene);
+    std::vector<Flicker> of_cache, of_direct;
+    std::vector<ImageError> error_of_cache, error_of_direct;
+    std::optional<Film> cached_before, direct_before, reference_before;
+    glm::vec3 eye_before(0.0f);
+    for (int frame = 0; frame < 16; ++frame) {
+        const glm::vec3 eye(0.011f * float(frame), 0.005f * float(frame),
+                            4.0f - 0.01f * float(frame));
+        scene.nodes[1].translation = eye;
+        const Film cached = reused.render(), direct = reused.direct();
+        if (frame >= 10) {
+            const Film wanted = reference.direct();
+            if (reference_before) {
+                const std::vector<glm::vec2> moved = motion_of(scene, rays, eye_before, eye);
+                of_cache.push_back(
+                    flicker(*cached_before, cached, *reference_before, wanted, moved));
+                of_direct.push_back(
+                    flicker(*direct_before, direct, *reference_before, wanted, moved));
+                error_of_cache.push_back(compare_films(cached, wanted));
+                error_of_direct.push_back(compare_films(direct, wanted));
+            }
+            reference_before = wanted;
+        }
+        cached_before = cached;
+        direct_before = direct;
+        eye_before = eye;
+    }
+    EXPECT_LT(pooled(of_cache).rms, pooled(of_direct).rms);
+    EXPECT_LT(pooled(error_of_cache).rmse, 1.25 * pooled(error_of_direct).rmse);
+    RecordProperty("flicker_of_cache", std::to_string(pooled(of_cache).rms));
+    RecordProperty("flicker_of_direct", std::to_string(pooled(of_direct).rms));
+    RecordProperty("rmse_of_cache", std::to_string(pooled(error_of_cache).rmse));
+    RecordProperty("rmse_of_direct", std::to_string(pooled(error_of_direct).rmse));
 }
 
 TEST(Reuse, KeepsAlphaWhereTheBackgroundIsSeen) {
