@@ -58,11 +58,11 @@ public:
         RayId second;  ///< of the same rectangle
         bool exists, was_hidden, has_second;
     };
+    /// @param pixel   its number in the tile
     /// @param sample  of the pattern
-    Candidate candidate(int x, int y, int sample) const noexcept {
+    Candidate candidate(int tile, int pixel, int sample) const noexcept {
         const std::uint64_t* const slots =
-            m_slots.get() + std::size_t(TileGrid::tile(x, y, m_tiles.columns)) * m_tile_slots +
-            std::size_t(TileGrid::number(x, y));
+            m_slots.get() + std::size_t(tile) * m_tile_slots + std::size_t(pixel);
         const std::uint64_t slot = slots[std::size_t(sample) * sample_stride];
         Candidate found;
         found.second.bits = slots[std::size_t(m_strata.count() + sample) * sample_stride];

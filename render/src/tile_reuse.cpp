@@ -14,6 +14,7 @@ void TileRenderer::list_points(const FrameContext& frame, const glm::ivec2& corn
     const Reprojection& reuse = *frame.reuse;
     const ReuseCache& cache = reuse.cache();
     const SampleStrata& strata = reuse.strata();
+    const int tile = TileGrid::tile(corner.x, corner.y, TileGrid(frame.settings.width, 1).columns);
     const glm::ivec2 size =
         glm::min(glm::ivec2(TileGrid::width, TileGrid::height),
                  glm::ivec2(frame.settings.width, frame.settings.height) - corner);
@@ -30,30 +31,30 @@ void TileRenderer::list_points(const FrameContext& frame, const glm::ivec2& corn
     m_outlines.start(across);
     for (int y = 0; y < down; ++y) {
         // Records lie all over memory: those of a row are asked for before any is used.
-        for (int x = 0; x < across; ++x) {
-            const glm::ivec2 pixel(x / strata.columns(), y / strata.rows());
-            const int sample =
-                strata.sample(x % strata.columns() + y % strata.rows() * strata.columns());
-            Listed& one =
-                m_listed[std::size_t(sample * capacity + TileGrid::number(pixel.x, pixel.y))];
-            row[std::size_t(x)] = &one;
-            const Reprojection::Candidate found =
-                reuse.candidate(corner.x + pixel.x, corner.y + pixel.y, sample);
-            one = {};
-            if (!found.exists) continue;
-            const ReuseCache::Page& page = cache.page(found.id.page());
-            one.id = found.id;
-            one.record = page.record(found.id.index());
-            one.instance = page.instance;
-            one.was_hidden = found.was_hidden;
-            if (found.has_second) {
+        const int pixel_y = y / strata.rows();
+        const int first_stratum = y % strata.rows() * strata.columns();
+        std::size_t cell = 0;
+        for (int pixel_x = 0; pixel_x < size.x; ++pixel_x) {
+            const int number = TileGrid::number(pixel_x, pixel_y);
+            for (int column = 0; column < strata.columns(); ++column) {
+                const int sample = strata.sample(first_stratum + column);
+                Listed& one = m_listed[std::size_t(sample * capacity + number)];
+                row[cell++] = &one;
+                one = {};
+                const Reprojection::Candidate found = reuse.candidate(tile, number, sample);
+                if (!found.exists) continue;
+                const ReuseCache::Page& page = cache.page(found.id.page());
+                one.id = found.id;
+                one.record = page.record(found.id.index());
+                one.instance = page.instance;
+                one.was_hidden = found.was_hidden;
+                __builtin_prefetch(one.record);
+                if (!found.has_second) continue;
                 const ReuseCache::Page& other = cache.page(found.second.page());
-                if (other.instance == one.instance) {
-                    one.second = other.record(found.second.index());
-                    __builtin_prefetch(one.second);
-                }
+                if (other.instance != one.instance) continue;
+                one.second = other.record(found.second.index());
+                __builtin_prefetch(one.second);
             }
-            __builtin_prefetch(one.record);
         }
         for (int x = 0; x < across; ++x) {
             const Listed& one = *row[std::size_t(x)];
