@@ -38,15 +38,10 @@ void OutlineFinder::next(std::uint8_t* above) {
     wide([a = View(now), b = View(before), right = now.right.data(), below = before.below.data(),
           cells = m_width + 1]() ESTARA_LOOP {
         const auto differ = [](const View& p, int x, const View& q, int y) ESTARA_LOOP {
-            constexpr float least = 0.8f;  // cosine between normals
-            constexpr float steep = 0.1f;  // square of the sine of the way's angle with a plane
-            const glm::vec3 m(p.Nx[x], p.Ny[x], p.Nz[x]), n(q.Nx[y], q.Ny[y], q.Nz[y]);
-            const glm::vec3 way(q.Px[y] - p.Px[x], q.Py[y] - p.Py[x], q.Pz[y] - p.Pz[x]);
-            const float off_m = glm::dot(m, way), off_n = glm::dot(n, way);
-            const float most = steep * glm::dot(way, way);
             const int i = p.instance[x], j = q.instance[y];
-            const bool alike = (i == j) & (glm::dot(m, n) > least) & (off_m * off_m <= most) &
-                               (off_n * off_n <= most);
+            const bool alike =
+                (i == j) & is_one_surface({p.Px[x], p.Py[x], p.Pz[x]}, {p.Nx[x], p.Ny[x], p.Nz[x]},
+                                          {q.Px[y], q.Py[y], q.Pz[y]}, {q.Nx[y], q.Ny[y], q.Nz[y]});
             return alike | (i == beyond) | (j == beyond) ? 0 : 1;
         };
 #pragma GCC ivdep

@@ -7,15 +7,29 @@
 #include <cstdint>
 #include <vector>
 
+#include "estara/shaders/kernel.h"
+
 namespace estara {
+
+/// Whether two neighbouring points of one instance seem to lie on one surface: their normals are
+/// less than 37 degrees apart, and the way from one to the other leaves neither's plane by more
+/// than 18 degrees.
+/// @param P, Ng  object space; Ng of unit length
+ESTARA_KERNEL bool is_one_surface(const glm::vec3& P_a, const glm::vec3& Ng_a, const glm::vec3& P_b,
+                                  const glm::vec3& Ng_b) noexcept {
+    constexpr float least = 0.8f;  // cosine between normals
+    constexpr float steep = 0.1f;  // square of the sine of the way's angle with a plane
+    const glm::vec3 way = P_b - P_a;
+    const float off_a = glm::dot(Ng_a, way), off_b = glm::dot(Ng_b, way);
+    const float most = steep * glm::dot(way, way);
+    return (glm::dot(Ng_a, Ng_b) > least) & (off_a * off_a <= most) & (off_b * off_b <= most);
+}
 
 /// Finds the outlines in a raster of points, some of them not known, row after row.
 ///
 /// A cell is at an outline if its point and that of one of its four neighbours are of different
-/// instances, or seem to be of different parts of one: their normals lie more than 37 degrees
-/// apart, or the way from one to the other more than 18 degrees off the plane of one. Next to a
-/// cell without a point all others are at an outline; what is beyond the raster is taken to be
-/// alike.
+/// instances, or not of one surface. Next to a cell without a point all others are at an outline;
+/// what is beyond the raster is taken to be alike.
 class OutlineFinder {
 public:
     static constexpr int none = -1;  ///< instance of a cell without a point

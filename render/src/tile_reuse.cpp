@@ -334,14 +334,15 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
 /// falls, and so does what changes when one of them goes.
 void TileRenderer::average_seconds(const FrameContext& frame, const Group& group,
                                    const RecordLayout& layout) {
-    constexpr float least = 0.8f;  // cosine between normals, as for outlines
     const auto mean = [](float& a, float b) { a = 0.5f * (a + b); };
     for (int j = group.first; j < group.last; ++j) {
         const float* const second = m_candidates.second[m_order[j]];
         if (second == nullptr) continue;
         constexpr int P = RecordLayout::P, N = RecordLayout::Ng;
-        const glm::vec3 Ng(second[N], second[N + 1], second[N + 2]);
-        bool alike = glm::dot(Ng, at(m_samples.Ng_object, j)) > least;
+        // It may lie behind the first, and nobody has looked whether it is hidden.
+        bool alike = is_one_surface(at(m_samples.surface.P, j), at(m_samples.Ng_object, j),
+                                    {second[P], second[P + 1], second[P + 2]},
+                                    {second[N], second[N + 1], second[N + 2]});
         if (layout.is_lit()) {  // from the same side
             const auto sides = std::bit_cast<std::uint32_t>(second[layout.sides()]);
             alike = alike && ((sides ^ m_sides[std::size_t(j)]) & 1u) == 0;

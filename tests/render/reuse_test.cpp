@@ -206,6 +206,26 @@ TEST(Reuse, FlickersLessThanDirectFramesDo) {
     RecordProperty("rmse_of_direct", std::to_string(pooled(error_of_direct).rmse));
 }
 
+/// Points of the wall that a strip in front of it has just hidden are in its pixels too.
+TEST(Reuse, DoesNotMixInWhatLiesBehindOnTheSameObject) {
+    Mesh sheets;
+    sheets.P = {{-0.6f, -2, 0}, {0.6f, -2, 0}, {0.6f, 2, 0}, {-0.6f, 2, 0},
+                {-8, -8, -2},   {8, -8, -2},   {8, 8, -2},   {-8, 8, -2}};
+    sheets.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    Scene scene = scene_of({object("sheets", sheets, "wood",
+                                   {{"ringscale", {0.2f}},
+                                    {"lightwood", {1, 1, 1}},
+                                    {"darkwood", {0, 0, 0}},
+                                    {"Ka", {1.0f}}})});
+    scene.ambient = glm::vec3(1.0f);
+    Reused reused(scene, 1u << 26, true, 16);
+    for (int frame = 0; frame < 12; ++frame) {
+        scene.nodes[1].translation.x = 0.05f * float(frame);
+        const Film film = reused.render();
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.004) << frame;
+    }
+}
+
 TEST(Reuse, KeepsAlphaWhereTheBackgroundIsSeen) {
     Scene scene = scene_of({object("ball", sphere(1.0f, 48))});
     Reused reused(scene, 1u << 26, true, 16);
