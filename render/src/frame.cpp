@@ -81,8 +81,7 @@ struct FrameRenderer::Impl {
 
     /// @param number  of [0, tile_count())
     void render_tile(const FrameContext& frame, int number, Film& film, NewRecords& found) {
-        const glm::ivec2 corner = grid().corner(number * settings.tile_step);
-        tiles.local().render(frame, corner, film, found);
+        tiles.local().render(frame, number * settings.tile_step, film, found);
     }
     void render_and_keep(const FrameContext& frame, int count, ReuseCache& cache, Film& film,
                          const std::function<void()>& tile_done, ReuseCounts& counts);

@@ -80,11 +80,9 @@ SampleStrata::SampleStrata(int spp, std::uint32_t seed) : m_columns(spp), m_rows
     const glm::dvec2 shift = shift_of(spp, seed);
     m_shift = {wrapped(shift.x), wrapped(shift.y)};
     m_sample.resize(std::size_t(spp));
-    m_place.resize(std::size_t(spp));
     for (int i = 0; i < spp; ++i) {
         const glm::ivec2 cell(hammersley(i, spp) * glm::dvec2(m_columns, m_rows));
         m_sample[std::size_t(cell.y * m_columns + cell.x)] = i;
-        m_place[std::size_t(i)] = cell;
     }
 }
 

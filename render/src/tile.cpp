@@ -25,12 +25,12 @@ ObjectCost& TileRenderer::cost_of(const FrameContext& frame, const Group& group)
     return statistics.objects[std::size_t(frame.instances[group.instance].object)];
 }
 
-void TileRenderer::render(const FrameContext& frame, const glm::ivec2& corner, Film& film,
-                          NewRecords& found) {
-    list_pixels(frame, corner);
+void TileRenderer::render(const FrameContext& frame, int tile, Film& film, NewRecords& found) {
+    const TileGrid tiles(frame.settings.width, frame.settings.height);
+    list_pixels(frame, tiles.corner(tile));
     clear_sums(frame);
     if (frame.reuse != nullptr) {
-        list_points(frame, corner);
+        list_points(frame, tile, tiles.corner(tile));
         trace_own_rays(frame);
     }
     for (std::size_t sample = 0; sample < frame.pattern.size(); ++sample) {

@@ -56,9 +56,10 @@ class TileRenderer {
 public:
     static constexpr int capacity = batch_capacity;
 
-    /// Renders the pixels from `corner` on and writes them to the film.
+    /// Renders a tile and writes its pixels to the film.
+    /// @param tile   of TileGrid
     /// @param found  what the cache is to be given of this tile; not touched without reuse
-    void render(const FrameContext& frame, const glm::ivec2& corner, Film& film, NewRecords& found);
+    void render(const FrameContext& frame, int tile, Film& film, NewRecords& found);
 
     FrameStatistics statistics;  ///< of everything rendered since it was last reset
 
@@ -132,7 +133,7 @@ private:
 
     void clear_sums(const FrameContext& frame);
     void list_pixels(const FrameContext& frame, const glm::ivec2& corner);
-    void list_points(const FrameContext& frame, const glm::ivec2& corner);
+    void list_points(const FrameContext& frame, int tile, const glm::ivec2& corner);
     void recall(const FrameContext& frame, int sample);
     void list_candidates(const FrameContext& frame, int sample);
     void aim_at_candidates(const FrameContext& frame);

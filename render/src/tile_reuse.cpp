@@ -9,12 +9,11 @@
 namespace estara {
 
 /// Lists the points that the cache has for a tile's samples, and finds the outlines between them.
-void TileRenderer::list_points(const FrameContext& frame, const glm::ivec2& corner) {
+void TileRenderer::list_points(const FrameContext& frame, int tile, const glm::ivec2& corner) {
     const Stopwatch time;
     const Reprojection& reuse = *frame.reuse;
     const ReuseCache& cache = reuse.cache();
     const SampleStrata& strata = reuse.strata();
-    const int tile = TileGrid::tile(corner.x, corner.y, TileGrid(frame.settings.width, 1).columns);
     const glm::ivec2 size =
         glm::min(glm::ivec2(TileGrid::width, TileGrid::height),
                  glm::ivec2(frame.settings.width, frame.settings.height) - corner);
@@ -241,8 +240,6 @@ void TileRenderer::aim_at_candidates(const FrameContext& frame) {
         if (r == c) continue;
         put(m_rays.origin, r, at(m_rays.origin, c));
         put(m_rays.direction, r, at(m_rays.direction, c));
-        m_rays.tmin[r] = 0.0f;
-        m_rays.tmax[r] = 1.0f;
     }
 }
 

@@ -134,8 +134,8 @@ struct Quality {
     Flicker flicker;
 };
 
-/// As a display shows it. The room's bulbs are bare points: where a surface comes within
-/// millimetres of one a pixel reaches thousands, and would be all that an RMSE tells of.
+/// As a display shows it: else the few pixels that are far brighter than white, beside lamps, would
+/// be all that an RMSE tells of.
 Film clipped(Film film) {
     for (glm::vec4& pixel : film.color) pixel = glm::clamp(pixel, 0.0f, 1.0f);
     return film;

@@ -56,16 +56,13 @@ public:
         const int c = int((moved - std::floor(moved)) * float(cells));
         return c < cells ? c : cells - 1;  // rounding
     }
-    /// The rectangle of a sample of the pattern: its column and row.
-    glm::ivec2 place(int sample) const noexcept { return m_place[std::size_t(sample)]; }
     /// The sample of the pattern in a rectangle, given as column + columns * row.
     int sample(int rectangle) const noexcept { return m_sample[std::size_t(rectangle)]; }
 
 private:
     int m_columns, m_rows;
     glm::vec2 m_shift;
-    std::vector<int> m_sample;        ///< by rectangle, row by row
-    std::vector<glm::ivec2> m_place;  ///< by sample
+    std::vector<int> m_sample;  ///< by rectangle, row by row
 };
 
 }  // namespace estara
