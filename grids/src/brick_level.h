@@ -16,12 +16,12 @@
 
 namespace estara {
 
-/// An index coordinate that may be anything: -1 below 0 and for NaN, at most 2^30, and so outside
-/// of every level; it fits an int.
+/// An index coordinate that may be anything, between -1 (NaN too) and 2^30, and so outside of every
+/// level where it was; its floor fits an int.
 inline double within_int(double index) noexcept {
-    constexpr double far = 1 << 30;
-    index = index >= 0.0 ? index : -1.0;
-    return index < far ? index : far;
+    constexpr double nearest = -1.0, farthest = 1 << 30;
+    const double above = index > nearest ? index : nearest;
+    return above < farthest ? above : farthest;
 }
 
 struct BrickLevel {

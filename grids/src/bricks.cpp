@@ -16,8 +16,11 @@
 namespace estara {
 namespace {
 
+template <class T>
+using ByAxis = std::array<T, 3>;
+
 /// Points that are worked on together, their voxels on their way.
-constexpr std::size_t in_flight = 32;
+constexpr std::size_t in_flight = 64;
 
 std::string title(const TextureGrid& grid) {
     return grid.object.empty() ? "texture grid" : fmt::format("object \"{}\"", grid.object);
@@ -29,12 +32,14 @@ constexpr float blend_width = 0.25f;
 
 ESTARA_KERNEL float fractional_level(float footprint, float voxel_size, float last,
                                      float bias) noexcept {
-    const float exact = log2_kernel(footprint / voxel_size) + bias;
-    const float within = exact > 0.0f ? (exact < last ? exact : last) : 0.0f;
+    // Limits one by one, without a branch that would keep the loop from being made wide.
+    const float exact = log2_kernel((footprint > 0.0f ? footprint : 0.0f) / voxel_size) + bias;
+    const float positive = exact > 0.0f ? exact : 0.0f;
+    const float within = positive < last ? positive : last;
     const float whole = float(std::int32_t(within));
     const float blend = (within - whole - 0.5f * (1.0f - blend_width)) * (1.0f / blend_width);
-    const float level = whole + clamp(blend, 0.0f, 1.0f);
-    return footprint > 0.0f ? level : 0.0f;
+    const float above = blend > 0.0f ? blend : 0.0f;
+    return whole + (above < 1.0f ? above : 1.0f);
 }
 
 }  // namespace
@@ -69,7 +74,8 @@ BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::v
     if (only != nullptr) {
         for (const glm::vec3& P : *only) {
             const glm::dvec3 index = (glm::dvec3(P) - m_origin) * (1.0 / m_voxel_size);
-            cells.emplace_back(within_int(index.x), within_int(index.y), within_int(index.z));
+            cells.emplace_back(glm::floor(
+                glm::dvec3(within_int(index.x), within_int(index.y), within_int(index.z))));
         }
         m_levels.emplace_back(grid.levels.front(), m_parts, cells, title(grid), limit);
     } else {
@@ -101,7 +107,8 @@ std::uint64_t BrickPyramid::bytes() const noexcept {
 
 /// What is looked up and where it goes.
 struct BrickPyramid::Batch {
-    std::span<const glm::vec3> P;
+    std::size_t size;  ///< points
+    ByAxis<const float*> P;
     const float* footprints;  ///< null: every point on `level`
     float level;
     float* planes;
@@ -110,9 +117,6 @@ struct BrickPyramid::Batch {
 };
 
 namespace {
-
-template <class T>
-using ByAxis = std::array<T, 3>;
 
 /// Where the values of up to n points are, each on a level of its own.
 template <std::size_t n>
@@ -123,21 +127,33 @@ struct Taps {
     std::array<std::array<float, 2>, n> z;
 };
 
+/// How object space becomes a level's index space.
+struct ToIndex {
+    glm::dvec3 origin;
+    double per_voxel;
+};
+
 /// Points [begin, end), all on one level.
-/// @param position  relative to index (0, 0, 0), in voxels of level 0
-/// @param miss      stands for the brick that is not there
+/// @param miss  stands for the brick that is not there
 template <std::size_t n>
-ESTARA_KERNEL void locate(const BrickLevel& level, double scale,
-                          const ByAxis<std::array<double, n>>& position, std::size_t begin,
-                          std::size_t end, const std::uint32_t* miss, Taps<n>& taps) noexcept {
+ESTARA_KERNEL void locate(const BrickLevel& level, const ToIndex& to_index,
+                          const ByAxis<const float*>& P, std::size_t begin, std::size_t end,
+                          const std::uint32_t* miss, Taps<n>& taps) noexcept {
     ByAxis<std::array<std::int32_t, n>> voxel;
     ByAxis<std::array<float, n>> far;  // weights of the farther voxels
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float* const p = P[axis];
+        const double origin = to_index.origin[int(axis)], per_voxel = to_index.per_voxel;
+        // Step by step: in one loop the compiler would choose between limits as integers as well.
+        std::array<double, n> index, whole;
         for (std::size_t i = begin; i < end; ++i) {
-            const double index = within_int(position[axis][i] * scale);
-            voxel[axis][i] = std::int32_t(index);
-            far[axis][i] = float(index - double(voxel[axis][i]));
+            index[i] = within_int((double(p[i]) - origin) * per_voxel);
         }
+        for (std::size_t i = begin; i < end; ++i) {
+            whole[i] = std::floor(index[i]);
+            far[axis][i] = float(index[i] - whole[i]);
+        }
+        for (std::size_t i = begin; i < end; ++i) voxel[axis][i] = std::int32_t(whole[i]);
     }
     std::array<std::uint32_t, n> root, middle, bottom, bit;
     for (std::size_t i = begin; i < end; ++i) {
@@ -173,15 +189,15 @@ ESTARA_KERNEL Floats4 interpolate(const BrickPart& part, const Taps<n>& taps,
 
 /// All points: those that follow each other on the same level together.
 template <std::size_t n>
-ESTARA_KERNEL void locate(const std::vector<BrickLevel>& levels,
-                          const std::array<std::int32_t, n>& level,
-                          const ByAxis<std::array<double, n>>& position, std::size_t count,
-                          const std::uint32_t* miss, std::span<const BrickPart> parts,
-                          Taps<n>& taps) noexcept {
+ESTARA_KERNEL void locate(const std::vector<BrickLevel>& levels, const ToIndex& finest,
+                          const std::array<std::int32_t, n>& level, const ByAxis<const float*>& P,
+                          std::size_t count, const std::uint32_t* miss,
+                          std::span<const BrickPart> parts, Taps<n>& taps) noexcept {
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
         while (end < count && level[end] == level[begin]) ++end;
         const double scale = std::bit_cast<float>((127 - level[begin]) << 23);  // 2^-level
-        locate(levels[std::size_t(level[begin])], scale, position, begin, end, miss, taps);
+        const ToIndex to_index{finest.origin, finest.per_voxel * scale};
+        locate(levels[std::size_t(level[begin])], to_index, P, begin, end, miss, taps);
     }
     for (const BrickPart& part : parts) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -201,22 +217,19 @@ ESTARA_KERNEL void locate(const std::vector<BrickLevel>& levels,
 template <std::size_t n>
 ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
                                               const Batch& batch) noexcept {
-    const double per_voxel = 1.0 / pyramid.m_voxel_size;
-    const glm::dvec3 origin = pyramid.m_origin;
+    const ToIndex finest{pyramid.m_origin, 1.0 / pyramid.m_voxel_size};
     const auto voxel_size = float(pyramid.m_voxel_size);
     const auto last = float(pyramid.m_levels.size() - 1);
     const std::uint32_t* const miss = pyramid.m_miss.data();
-    ByAxis<std::array<double, n>> position;
     std::array<std::int32_t, n> level;
     std::array<float, n> weight;
     Taps<n> fine, coarse;
-    for (std::size_t first = 0; first < batch.P.size(); first += n) {
-        const std::size_t count = std::min(n, batch.P.size() - first);
-        const glm::vec3* const P = batch.P.data() + first;
-        for (std::size_t i = 0; i < count; ++i) {
-            position[0][i] = (double(P[i].x) - origin.x) * per_voxel;
-            position[1][i] = (double(P[i].y) - origin.y) * per_voxel;
-            position[2][i] = (double(P[i].z) - origin.z) * per_voxel;
+    for (std::size_t first = 0; first < batch.size; first += n) {
+        const std::size_t count = std::min(n, batch.size - first);
+        const ByAxis<const float*> P{batch.P[0] + first, batch.P[1] + first, batch.P[2] + first};
+        for (const float* plane : P) {
+            constexpr std::size_t line = 64 / sizeof(float);
+            for (std::size_t i = 0; i < n; i += line) __builtin_prefetch(plane + n + i);
         }
         if (batch.footprints == nullptr) {
             weight.fill(batch.level);
@@ -232,13 +245,13 @@ ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
             weight[i] -= float(level[i]);
             blend |= weight[i] > 0.0f;
         }
-        locate(pyramid.m_levels, level, position, count, miss, pyramid.m_parts, fine);
+        locate(pyramid.m_levels, finest, level, P, count, miss, pyramid.m_parts, fine);
         std::array<std::uint8_t, n> found;  // (bytes that batch points to may alias anything)
         for (std::size_t i = 0; i < count; ++i) found[i] = fine.brick[i] != miss;
         std::memcpy(batch.found + first, found.data(), count);
         if (blend) {
             for (std::size_t i = 0; i < count; ++i) level[i] += weight[i] > 0.0f;
-            locate(pyramid.m_levels, level, position, count, miss, pyramid.m_parts, coarse);
+            locate(pyramid.m_levels, finest, level, P, count, miss, pyramid.m_parts, coarse);
             // Beside the surface one of the levels may have nothing: then the finer one alone.
             for (std::size_t i = 0; i < count; ++i) {
                 const bool both = (fine.brick[i] != miss) & (coarse.brick[i] != miss);
@@ -268,19 +281,44 @@ void BrickPyramid::run(const Batch& batch) const noexcept {
 
 bool BrickPyramid::lookup(const glm::vec3& P, int level, float* out) const noexcept {
     std::uint8_t found = 0;
-    run<1>({{&P, 1}, nullptr, float(level), out, 1, &found});
+    run<1>({1, {&P.x, &P.y, &P.z}, nullptr, float(level), out, 1, &found});
     return found != 0;
 }
 
 bool BrickPyramid::lookup(const glm::vec3& P, float footprint, float* out) const noexcept {
     std::uint8_t found = 0;
-    run<1>({{&P, 1}, &footprint, 0.0f, out, 1, &found});
+    run<1>({1, {&P.x, &P.y, &P.z}, &footprint, 0.0f, out, 1, &found});
     return found != 0;
+}
+
+void BrickPyramid::lookup(const float* P, std::span<const float> footprints, float* planes,
+                          std::size_t stride, std::uint8_t* found) const noexcept {
+    run<in_flight>({footprints.size(),
+                    {P, P + stride, P + 2 * stride},
+                    footprints.data(),
+                    0.0f,
+                    planes,
+                    stride,
+                    found});
 }
 
 void BrickPyramid::lookup(std::span<const glm::vec3> P, std::span<const float> footprints,
                           float* planes, std::size_t stride, std::uint8_t* found) const noexcept {
-    run<in_flight>({P, footprints.data(), 0.0f, planes, stride, found});
+    constexpr std::size_t some = 512;
+    std::array<float, 3 * some> by_axis;
+    for (std::size_t first = 0; first < P.size(); first += some) {
+        const std::size_t size = std::min(some, P.size() - first);
+        for (std::size_t i = 0; i < size; ++i) {
+            for (std::size_t c = 0; c < 3; ++c) by_axis[c * some + i] = P[first + i][int(c)];
+        }
+        run<in_flight>({size,
+                        {by_axis.data(), by_axis.data() + some, by_axis.data() + 2 * some},
+                        footprints.data() + first,
+                        0.0f,
+                        planes + first,
+                        stride,
+                        found + first});
+    }
 }
 
 float BrickPyramid::level_for(float footprint) const noexcept {

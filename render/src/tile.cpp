@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "estara/scenes/program.h"
 
 namespace estara {
 namespace {
+
+/// Triangles: with vertices and normals they no longer fit a core's caches (512 KiB).
+constexpr std::size_t large_mesh = 8192;
 
 /// v / |v|, or `otherwise` for a vector without direction.
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
@@ -63,15 +67,23 @@ void TileRenderer::render(const FrameContext& frame, int tile, Film& film, NewRe
 }
 
 void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corner) {
-    m_pixels.clear();
-    m_numbers.clear();
+    m_pixels.resize(capacity);
+    m_numbers.resize(capacity);
     for (int i = 0; i < capacity; ++i) {
-        const glm::ivec2 pixel = corner + TileGrid::place(i);
-        if (pixel.x < frame.settings.width && pixel.y < frame.settings.height) {
-            m_pixels.push_back(pixel);
-            m_numbers.push_back(i);
-        }
+        m_pixels[std::size_t(i)] = corner + TileGrid::place(i);
+        m_numbers[std::size_t(i)] = i;
     }
+    const glm::ivec2 size(frame.settings.width, frame.settings.height);
+    if (corner.x + TileGrid::width <= size.x && corner.y + TileGrid::height <= size.y) return;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < capacity; ++i) {
+        const glm::ivec2 pixel = m_pixels[i];
+        if (pixel.x >= size.x || pixel.y >= size.y) continue;
+        m_pixels[count] = pixel;
+        m_numbers[count++] = int(i);
+    }
+    m_pixels.resize(count);
+    m_numbers.resize(count);
 }
 
 /// Finds what the samples of a pass see that are not recalled.
@@ -113,25 +125,32 @@ int TileRenderer::sort_by_instance(const FrameContext& frame, const std::uint32_
     if (m_group_of_instance.size() != frame.instances.size()) {
         m_group_of_instance.assign(frame.instances.size(), -1);
     }
-    for (int i = 0; i < count; ++i) {
-        if (instances[i] == Hit::none) continue;
-        int& group = m_group_of_instance[instances[i]];
+    // Neighbours mostly lie on the same instance: calls f(instance, first, last) for those that do.
+    const auto for_each_run = [&](const auto& f) {
+        for (int first = 0, last = 0; first < count; first = last) {
+            while (last < count && instances[last] == instances[first]) ++last;
+            if (instances[first] != Hit::none) f(instances[first], first, last);
+        }
+    };
+    for_each_run([&](std::uint32_t instance, int first, int last) {
+        int& group = m_group_of_instance[instance];
         if (group < 0) {
             group = int(groups.size());
-            groups.push_back({instances[i], 0, 0, false});
+            groups.push_back({instance, 0, 0, false});
         }
-        ++groups[std::size_t(group)].last;
-    }
+        groups[std::size_t(group)].last += last - first;
+    });
     int sorted = 0;
     for (Group& group : groups) {
         const int size = group.last;
         group.first = group.last = sorted;
         sorted += size;
     }
-    for (int i = 0; i < count; ++i) {
-        if (instances[i] == Hit::none) continue;
-        order[groups[std::size_t(m_group_of_instance[instances[i]])].last++] = i;
-    }
+    for_each_run([&](std::uint32_t instance, int first, int last) {
+        int& to = groups[std::size_t(m_group_of_instance[instance])].last;
+        std::iota(order + to, order + to + (last - first), first);
+        to += last - first;
+    });
     for (const Group& group : groups) m_group_of_instance[group.instance] = -1;
     return sorted;
 }
@@ -178,20 +197,19 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
     const bool on_surface = shading.shader->domain() == Domain::surface && !shading.pyramid;
     const glm::vec2* const uv = on_surface && mesh.has_uv() ? mesh.uv.data() : nullptr;
     SurfaceBatch& surface = m_samples.surface;
-    // Vertices are anywhere in memory: those of some samples are asked for before any is used.
+    // Of a large mesh the vertices are anywhere in memory: those of some samples are asked for
+    // before any is used.
+    const bool is_large = mesh.triangles.size() > large_mesh;
     constexpr int ahead = 32;
-    std::array<glm::uvec3, ahead> corners;
     for (int first = group.first; first < group.last; first += ahead) {
         const int last = std::min(first + ahead, group.last);
-        for (int j = first; j < last; ++j) {
-            const int i = m_order[j];
-            m_samples.pixel[j] = m_ray_pixel[i];
-            __builtin_prefetch(&mesh.triangles[m_hits.triangle[i]]);
-            __builtin_prefetch(&Ng[m_hits.triangle[i]]);
+        for (int j = first; is_large && j < last; ++j) {
+            const std::uint32_t triangle = m_hits.triangle[m_order[j]];
+            __builtin_prefetch(&mesh.triangles[triangle]);
+            __builtin_prefetch(&Ng[triangle]);
         }
-        for (int j = first; j < last; ++j) {
-            const glm::uvec3 t = mesh.triangles[m_hits.triangle[m_order[j]]];
-            corners[std::size_t(j - first)] = t;
+        for (int j = first; is_large && j < last; ++j) {
+            const glm::uvec3& t = mesh.triangles[m_hits.triangle[m_order[j]]];
             for (int k = 0; k < 3; ++k) {
                 __builtin_prefetch(&mesh.P[t[k]]);
                 if (N) __builtin_prefetch(&N[t[k]]);
@@ -200,9 +218,11 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
         }
         for (int j = first; j < last; ++j) {
             const int i = m_order[j];
-            const glm::uvec3 t = corners[std::size_t(j - first)];
+            const std::uint32_t triangle = m_hits.triangle[i];
+            const glm::uvec3 t = mesh.triangles[triangle];
             const float b1 = m_hits.b1[i], b2 = m_hits.b2[i], b0 = 1.0f - b1 - b2;
-            const glm::vec3 g = Ng[m_hits.triangle[i]];
+            const glm::vec3 g = Ng[triangle];
+            m_samples.pixel[j] = m_ray_pixel[i];
             put(surface.P, j, b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z]);
             put(m_samples.Ng_object, j, g);
             put(surface.N, j, N ? b0 * N[t.x] + b1 * N[t.y] + b2 * N[t.z] : g);
@@ -338,21 +358,17 @@ void TileRenderer::find_footprints(const FrameContext& frame, const Group& group
     const float scale = frame.instances[group.instance].largest_scale;
     const float width_at_1 =
         frame.camera.pixel_angle() / std::sqrt(float(frame.pattern.size())) / scale;
-    const auto size = std::size_t(group.last - group.first);
-    m_P.resize(size);
-    m_footprints.resize(size);
-    for (std::size_t i = 0; i < size; ++i) {
-        const int j = group.first + int(i);
-        m_P[i] = at(m_samples.surface.P, j);
-        m_footprints[i] = m_samples.distance[j] * width_at_1;
+    m_footprints.resize(std::size_t(group.last - group.first));
+    for (std::size_t i = 0; i < m_footprints.size(); ++i) {
+        m_footprints[i] = m_samples.distance[std::size_t(group.first) + i] * width_at_1;
     }
 }
 
 void TileRenderer::look_up(const FrameContext& frame, const Group& group,
                            const ObjectShading& shading) {
     find_footprints(frame, group);
-    shading.pyramid->lookup(m_P, m_footprints, m_planes.data() + group.first, capacity,
-                            m_found.data());
+    shading.pyramid->lookup(m_samples.surface.P[0] + group.first, m_footprints,
+                            m_planes.data() + group.first, capacity, m_found.data());
     const int size = group.last - group.first;
     m_missed.clear();
     for (int i = 0; i < size; ++i) {

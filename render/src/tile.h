@@ -126,6 +126,8 @@ private:
         Plane depth;
         int hits[capacity];
         int recalled[capacity], age[capacity], occluded[capacity];
+        Plane covered;      ///< hits, weighted
+        int bad[capacity];  ///< 1: the colour is not finite
         Planes color_x, color_y;  ///< color, times the sample's place from the pixel's centre
         Plane hit_x, hit_y;       ///< sums of these places
         Plane moved[5];  ///< what recalled points add to the pattern's sums of x, y, xx, xy, yy
@@ -180,6 +182,8 @@ private:
     void accumulate_places(const glm::vec2& own);
     PlaceMoments places_of(const FrameContext& frame, int pixel) const;
     void resolve(const FrameContext& frame, Film& film);
+    void weigh_by_place(const FrameContext& frame);
+    void resolve_aovs(float samples, Film& film);
     const ObjectShading& shading_of(const FrameContext& frame, const Group& group) const;
     ObjectCost& cost_of(const FrameContext& frame, const Group& group);
 
@@ -211,7 +215,6 @@ private:
     int m_shadow_sample[capacity];  ///< of each shadow ray
     std::array<std::uint8_t, capacity> m_blocked, m_found;
     std::vector<float> m_planes;  ///< baked records of all samples
-    std::vector<glm::vec3> m_P;
     std::vector<float> m_footprints;
     std::vector<int> m_missed;
     SurfaceBatch m_missed_batch;

@@ -104,49 +104,72 @@ PlaceMoments TileRenderer::places_of(const FrameContext& frame, int pixel) const
 void TileRenderer::resolve(const FrameContext& frame, Film& film) {
     const float samples = float(frame.pattern.size());
     const float scale = std::exp2(frame.settings.exposure) / samples;
-    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        const auto p = int(i);
-        const std::size_t to = film.index(m_pixels[i].x, m_pixels[i].y);
-        film.color[to] = glm::vec4(0.0f);
-        if (film.aovs.albedo) film.albedo[to] = glm::vec3(0.0f);
-        if (film.aovs.normal) film.N[to] = glm::vec3(0.0f);
-        if (film.aovs.position) film.P[to] = glm::vec3(0.0f);
-        if (film.aovs.depth) film.depth[to] = 0.0f;
-        if (film.aovs.hit) film.hit[to] = 0.0f;
-        if (film.aovs.age) film.age[to] = 0.0f;
-        if (film.aovs.occluded) film.occluded[to] = float(m_sums.occluded[i]) / samples;
-        if (m_sums.hits[i] == 0) continue;
-        const float hits = float(m_sums.hits[i]);
-        glm::vec3 color = at(m_sums.color, p) * scale;
-        float coverage = hits / samples;
-        if (m_sums.recalled[i] > 0) {
-            const PlaceMoments places = places_of(frame, p);
-            const glm::vec2 g = slant(places, frame.pattern_moments.mean);
-            const auto weighted = [&](float sum, float x, float y) {
-                return sum - g.x * (x - places.mean.x * sum) - g.y * (y - places.mean.y * sum);
-            };
-            for (int c = 0; c < 3; ++c) {
-                color[c] = scale *
-                           weighted(m_sums.color[c][i], m_sums.color_x[c][i], m_sums.color_y[c][i]);
-            }
-            coverage = weighted(hits, m_sums.hit_x[i], m_sums.hit_y[i]) / samples;
-            coverage = std::clamp(coverage, 0.0f, 1.0f);
+    const int size = int(m_pixels.size());
+    for (int p = 0; p < size; ++p) m_sums.covered[p] = float(m_sums.hits[p]);
+    if (frame.reuse != nullptr) weigh_by_place(frame);
+    int bad = 0;
+    int* const bad_pixels = &bad;
+    wide([=, sums = &m_sums]() ESTARA_LOOP {
+        int any = 0;
+#pragma GCC ivdep
+        for (int p = 0; p < size; ++p) {
+            const bool hit = sums->hits[p] > 0;
+            const glm::vec3 none(0.0f);
+            const glm::vec3 color = select(hit, at(sums->color, p) * scale, none);
+            const bool good = is_finite(color.x) & is_finite(color.y) & is_finite(color.z);
+            put(sums->color, p, select(good, color, none));
+            sums->bad[p] = good ? 0 : 1;
+            any += sums->bad[p];
+            const float coverage = sums->covered[p] / samples;
+            const float positive = coverage > 0.0f ? coverage : 0.0f;
+            sums->covered[p] = positive < 1.0f ? positive : 1.0f;
         }
-        glm::vec3 albedo = film.aovs.albedo ? at(m_sums.albedo, p) / hits : glm::vec3(0.0f);
-        const bool good_color = is_finite(color.x) & is_finite(color.y) & is_finite(color.z);
-        const bool good_albedo = is_finite(albedo.x) & is_finite(albedo.y) & is_finite(albedo.z);
-        if (!good_color || !good_albedo) {
-            ++statistics.bad_pixels;
-            if (!good_color) color = glm::vec3(0.0f);
-            if (!good_albedo) albedo = glm::vec3(0.0f);
+        *bad_pixels = any;
+    });
+    statistics.bad_pixels += std::uint64_t(bad);
+    for (int p = 0; p < size; ++p) {
+        const glm::ivec2 pixel = m_pixels[std::size_t(p)];
+        film.color[film.index(pixel.x, pixel.y)] =
+            glm::vec4(at(m_sums.color, p), m_sums.covered[p]);
+    }
+    if (frame.settings.aovs.any()) resolve_aovs(samples, film);
+}
+
+/// Of pixels with recalled samples: sums as if these lay where the pattern's do.
+void TileRenderer::weigh_by_place(const FrameContext& frame) {
+    for (int p = 0; p < int(m_pixels.size()); ++p) {
+        if (m_sums.recalled[p] == 0) continue;
+        const PlaceMoments places = places_of(frame, p);
+        const glm::vec2 g = slant(places, frame.pattern_moments.mean);
+        const auto weighted = [&](float sum, float x, float y) {
+            return sum - g.x * (x - places.mean.x * sum) - g.y * (y - places.mean.y * sum);
+        };
+        for (int c = 0; c < 3; ++c) {
+            float& sum = m_sums.color[c][p];
+            sum = weighted(sum, m_sums.color_x[c][p], m_sums.color_y[c][p]);
         }
-        film.color[to] = glm::vec4(color, coverage);
-        if (film.aovs.albedo) film.albedo[to] = albedo;
-        if (film.aovs.normal) film.N[to] = at(m_sums.N, p) / hits;
-        if (film.aovs.position) film.P[to] = at(m_sums.P, p) / hits;
-        if (film.aovs.depth) film.depth[to] = m_sums.depth[i] / hits;
-        if (film.aovs.hit) film.hit[to] = float(m_sums.recalled[i]) / samples;
-        if (film.aovs.age) film.age[to] = float(m_sums.age[i]) / hits;
+        m_sums.covered[p] = weighted(m_sums.covered[p], m_sums.hit_x[p], m_sums.hit_y[p]);
+    }
+}
+
+void TileRenderer::resolve_aovs(float samples, Film& film) {
+    const Aovs& aovs = film.aovs;
+    for (int p = 0; p < int(m_pixels.size()); ++p) {
+        const glm::ivec2 pixel = m_pixels[std::size_t(p)];
+        const std::size_t to = film.index(pixel.x, pixel.y);
+        const float hits = float(std::max(m_sums.hits[p], 1));  // the sums of none are 0
+        if (aovs.albedo) {
+            const glm::vec3 albedo = at(m_sums.albedo, p) / hits;
+            const bool good = is_finite(albedo.x) & is_finite(albedo.y) & is_finite(albedo.z);
+            film.albedo[to] = good ? albedo : glm::vec3(0.0f);
+            if (!good && m_sums.bad[p] == 0) ++statistics.bad_pixels;
+        }
+        if (aovs.normal) film.N[to] = at(m_sums.N, p) / hits;
+        if (aovs.position) film.P[to] = at(m_sums.P, p) / hits;
+        if (aovs.depth) film.depth[to] = m_sums.depth[p] / hits;
+        if (aovs.hit) film.hit[to] = float(m_sums.recalled[p]) / samples;
+        if (aovs.age) film.age[to] = float(m_sums.age[p]) / hits;
+        if (aovs.occluded) film.occluded[to] = float(m_sums.occluded[p]) / samples;
     }
 }
 

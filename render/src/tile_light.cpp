@@ -26,7 +26,8 @@ void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& gr
     const Stopwatch time;
     m_irradiance.resize(4 * capacity);
     find_footprints(frame, group);
-    shading.irradiance->lookup(m_P, m_footprints, m_irradiance.data(), capacity, m_found.data());
+    shading.irradiance->lookup(m_samples.surface.P[0] + group.first, m_footprints,
+                               m_irradiance.data(), capacity, m_found.data());
     for (int j = group.first; j < group.last; ++j) {
         const auto i = std::size_t(j - group.first);
         const bool baked = m_found[i] && m_samples.front[j] &&

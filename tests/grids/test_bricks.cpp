@@ -239,6 +239,15 @@ Looked batch(const BrickPyramid& bricks, const std::vector<glm::vec3>& P,
     Looked looked{std::vector<float>(P.size() * std::size_t(bricks.floats())),
                   std::vector<std::uint8_t>(P.size())};
     bricks.lookup(P, footprints, looked.planes.data(), P.size(), looked.found.data());
+
+    std::vector<float> by_axis(3 * P.size());
+    for (std::size_t i = 0; i < P.size(); ++i) {
+        for (std::size_t a = 0; a < 3; ++a) by_axis[a * P.size() + i] = P[i][int(a)];
+    }
+    Looked same = looked;
+    std::fill(same.planes.begin(), same.planes.end(), not_a_number);
+    bricks.lookup(by_axis.data(), footprints, same.planes.data(), P.size(), same.found.data());
+    EXPECT_TRUE(same == looked) << "points by axis";
     return looked;
 }
 

@@ -66,11 +66,16 @@ public:
     ///                   mean the finest level, NaN too
     bool lookup(const glm::vec3& P, float footprint, float* out) const noexcept;
 
-    /// lookup(P[i], footprints[i]) for each point, with the same bits. Several times faster than
+    /// lookup(point i, footprints[i]) for each point, with the same bits. Several times faster than
     /// one by one: points are located side by side, and the voxels of many are asked of memory at
     /// once and computed with when they arrive.
+    /// @param P       object space, axis a of point i is P[a * stride + i]
     /// @param planes  float c of point i becomes planes[c * stride + i]
     /// @param found   1 or 0, what lookup() returns for the point
+    void lookup(const float* P, std::span<const float> footprints, float* planes,
+                std::size_t stride, std::uint8_t* found) const noexcept;
+
+    /// The same for points that are not kept by axis.
     void lookup(std::span<const glm::vec3> P, std::span<const float> footprints, float* planes,
                 std::size_t stride, std::uint8_t* found) const noexcept;
 
