@@ -54,6 +54,7 @@ ReuseCounts& ReuseCounts::operator+=(const ReuseCounts& other) noexcept {
     slots += other.slots;
     rays += other.rays;
     hits += other.hits;
+    untested += other.untested;
     misses += other.misses;
     occluded += other.occluded;
     turned += other.turned;

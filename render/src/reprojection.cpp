@@ -30,7 +30,6 @@ struct Reprojection::Fallen {
 struct Reprojection::Sorting {
     std::vector<std::uint64_t> fallen;  ///< by pixel
     std::vector<LeftOver> left_over;    ///< of a pixel
-    std::vector<std::uint64_t> slots;   ///< of a pixel, by rectangle
 };
 
 template <class F>
@@ -47,8 +46,8 @@ Reprojection::Reprojection(const FrameSettings& settings)
       m_height(settings.height),
       m_tiles(settings.width, settings.height),
       m_strata(settings.spp, settings.seed),
-      m_tile_slots(2 * sample_stride * std::size_t(settings.spp)),
-      m_slots(new std::uint64_t[m_tile_slots * std::size_t(m_tiles.count())]) {}
+      m_slot_count(std::size_t(m_tiles.count()) * batch_capacity * 2 * std::size_t(settings.spp)),
+      m_slots(new std::uint64_t[m_slot_count]) {}
 
 void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
                          std::span<const PosedInstance> instances) {
@@ -85,7 +84,7 @@ void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
 }
 
 std::uint64_t Reprojection::bytes() const noexcept {
-    std::uint64_t sum = m_tile_slots * std::size_t(m_tiles.count()) * sizeof(std::uint64_t) +
+    std::uint64_t sum = m_slot_count * sizeof(std::uint64_t) +
                         (m_serving.capacity() + m_looked_at.capacity()) * sizeof(int) +
                         m_in_view.capacity();
     for (const Bins& bins : m_bins) {
@@ -169,30 +168,22 @@ void Reprojection::serve_tile(int tile, Sorting& sorting) {
     std::copy_n(first.begin(), next.size(), next.begin());
     each([&](std::uint64_t fallen) { sorting.fallen[next[fallen >> Fallen::pixel]++] = fallen; });
 
-    std::uint64_t* const slots = m_slots.get() + std::size_t(tile) * m_tile_slots;
-    const auto count = std::size_t(m_strata.count());
-    sorting.slots.resize(2 * count);
+    const std::size_t slots = 2 * std::size_t(m_strata.count());
+    std::fill_n(slots_of(tile, 0), slots * batch_capacity, none);
     for (std::size_t i = 0; i < batch_capacity; ++i) {
-        std::fill(sorting.slots.begin(), sorting.slots.end(), none);
-        if (first[i] < first[i + 1]) {
-            serve_pixel({sorting.fallen.data() + first[i], first[i + 1] - first[i]},
-                        sorting.slots.data(), sorting.left_over);
-        }
-        for (std::size_t s = 0; s < count; ++s) {
-            const std::size_t sample = std::size_t(m_strata.sample(int(s)));
-            slots[sample * sample_stride + i] = sorting.slots[s];
-            slots[(count + sample) * sample_stride + i] = sorting.slots[count + s];
-        }
+        if (first[i] == first[i + 1]) continue;
+        serve_pixel({sorting.fallen.data() + first[i], first[i + 1] - first[i]},
+                    slots_of(tile, int(i)), sorting.left_over);
     }
-    count_serving(slots);
+    count_serving({slots_of(tile, 0), slots * batch_capacity});
 }
 
 /// @param slots  by rectangle, then the seconds; all of them none
 void Reprojection::serve_pixel(std::span<const std::uint64_t> fallen, std::uint64_t* slots,
                                std::vector<LeftOver>& left_over) const {
-    const auto id = [&](std::uint64_t bits) {
+    const auto key = [&](std::uint64_t bits) {
         const std::uint32_t page = Fallen::page_of(bits);
-        return RayId(m_cache->page(page).born, page, Fallen::index_of(bits)).bits;
+        return key_of(RayId(m_cache->page(page).born, page, Fallen::index_of(bits)));
     };
     const auto is_hidden = [](std::uint64_t bits) { return (bits >> Fallen::hidden & 1) != 0; };
     left_over.clear();
@@ -204,7 +195,7 @@ void Reprojection::serve_pixel(std::span<const std::uint64_t> fallen, std::uint6
         }
         const int stratum = Fallen::stratum_of(bits);
         std::uint64_t& slot = slots[stratum];
-        const std::uint64_t one = id(bits);
+        const std::uint64_t one = key(bits);
         if (slot != none) left_over.push_back({std::max(one, slot), stratum});
         slot = std::min(one, slot);
     }
@@ -213,7 +204,7 @@ void Reprojection::serve_pixel(std::span<const std::uint64_t> fallen, std::uint6
     for (const std::uint64_t bits : fallen) {
         std::uint64_t& slot = slots[Fallen::stratum_of(bits)];
         if (is_hidden(bits) && (slot == none || (slot & hidden) != 0)) {
-            slot = std::min(slot, id(bits) | hidden);
+            slot = std::min(slot, key(bits) | hidden);
         }
     }
 }
@@ -227,41 +218,37 @@ void Reprojection::spread(std::vector<LeftOver>& points, std::uint64_t* slots) c
         const int s = point.stratum, column = s % columns;
         const auto take = [&](bool exists, int beside) {
             if (!exists || slots[beside] != none) return false;
-            slots[beside] = point.id;
+            slots[beside] = point.key;
             return true;
         };
         if (take(column > 0, s - 1) || take(column + 1 < columns, s + 1)) continue;
         if (take(s >= columns, s - columns) || take(s + columns < count, s + columns)) continue;
         std::uint64_t& second = slots[count + s];
-        second = std::min(second, point.id);
+        second = std::min(second, point.key);
     }
 }
 
 /// How many points of each page serve a tile.
-void Reprojection::count_serving(const std::uint64_t* slots) {
+void Reprojection::count_serving(std::span<const std::uint64_t> slots) {
     std::uint32_t current = ~0u;
     int run = 0;  // neighbours are mostly of one page
     const auto add = [&] {
         if (run == 0) return;
         std::atomic_ref(m_serving[current]).fetch_add(run, std::memory_order_relaxed);
     };
-    for (int sample = 0; sample < 2 * m_strata.count(); ++sample) {
-        const std::uint64_t* const some = slots + std::size_t(sample) * sample_stride;
-        for (std::size_t i = 0; i < batch_capacity; ++i) {
-            if (some[i] == none) continue;
-            RayId id;
-            id.bits = some[i] & ~hidden;
-            if ((some[i] & hidden) != 0) {  // looked at, but of little hope
-                std::atomic_ref(m_looked_at[id.page()]).store(1, std::memory_order_relaxed);
-                continue;
-            }
-            if (id.page() != current) {
-                add();
-                current = id.page();
-                run = 0;
-            }
-            ++run;
+    for (const std::uint64_t slot : slots) {
+        if (slot == none) continue;
+        const RayId id = id_of(slot & ~hidden);
+        if ((slot & hidden) != 0) {  // looked at, but of little hope
+            std::atomic_ref(m_looked_at[id.page()]).store(1, std::memory_order_relaxed);
+            continue;
         }
+        if (id.page() != current) {
+            add();
+            current = id.page();
+            run = 0;
+        }
+        ++run;
     }
     add();
 }

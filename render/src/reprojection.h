@@ -58,17 +58,16 @@ public:
         RayId second;  ///< of the same rectangle
         bool exists, was_hidden, has_second;
     };
-    /// @param pixel   its number in the tile
-    /// @param sample  of the pattern
-    Candidate candidate(int tile, int pixel, int sample) const noexcept {
-        const std::uint64_t* const slots =
-            m_slots.get() + std::size_t(tile) * m_tile_slots + std::size_t(pixel);
-        const std::uint64_t slot = slots[std::size_t(sample) * sample_stride];
+    /// @param pixel      its number in the tile
+    /// @param rectangle  of the pixel, in [0, strata().count())
+    Candidate candidate(int tile, int pixel, int rectangle) const noexcept {
+        const std::uint64_t* const slots = slots_of(tile, pixel);
+        const std::uint64_t slot = slots[rectangle], second = slots[m_strata.count() + rectangle];
         Candidate found;
-        found.second.bits = slots[std::size_t(m_strata.count() + sample) * sample_stride];
-        found.id.bits = slot & ~hidden;
+        found.id = id_of(slot & ~hidden);
+        found.second = id_of(second);
         found.exists = slot != none;
-        found.has_second = found.second.bits != none;
+        found.has_second = second != none;
         found.was_hidden = (slot & hidden) != 0;
         return found;
     }
@@ -85,9 +84,26 @@ public:
 
 private:
     static constexpr std::uint64_t hidden = std::uint64_t{1} << 63, none = ~std::uint64_t{0};
-    /// Samples of a tile lie a little more apart than its pixels take, or they would all be wanted
-    /// in the same few lines of the processor's cache.
-    static constexpr std::size_t sample_stride = batch_capacity + 8;
+
+    /// What points are compared by: the oldest first, and those of one frame in no order. (In that
+    /// of their records those on one side would always win over those on the other.) A number and
+    /// its inverse, modulo 2^64, scatter them and bring them back.
+    static constexpr std::uint64_t scatter = 0x9e3779b97f4a7c15, gather = 0xf1de83e19937733d;
+    static_assert(scatter * gather == 1);
+    static constexpr std::uint64_t of_one_frame =
+        (std::uint64_t{1} << (RayId::index_bits + RayId::page_bits)) - 1;
+    static std::uint64_t key_of(RayId id) noexcept {
+        return (id.bits & ~of_one_frame) | ((id.bits * scatter) & of_one_frame);
+    }
+    static RayId id_of(std::uint64_t key) noexcept {
+        RayId id;
+        id.bits = (key & ~of_one_frame) | ((key * gather) & of_one_frame);
+        return id;
+    }
+    std::uint64_t* slots_of(int tile, int pixel) const noexcept {
+        return m_slots.get() + (std::size_t(tile) * batch_capacity + std::size_t(pixel)) *
+                                   2 * std::size_t(m_strata.count());
+    }
 
     /// A point that has fallen into a tile, packed: tiles hold many.
     struct Fallen;
@@ -95,9 +111,9 @@ private:
     using Bins = std::vector<std::vector<std::uint64_t>>;
     /// A point whose rectangle an older one has taken.
     struct LeftOver {
-        std::uint64_t id;
+        std::uint64_t key;
         int stratum;
-        bool operator<(const LeftOver& other) const noexcept { return id < other.id; }
+        bool operator<(const LeftOver& other) const noexcept { return key < other.key; }
     };
     /// What a tile's points are sorted in.
     struct Sorting;
@@ -112,14 +128,14 @@ private:
     void serve_pixel(std::span<const std::uint64_t> fallen, std::uint64_t* slots,
                      std::vector<LeftOver>& left_over) const;
     void spread(std::vector<LeftOver>& points, std::uint64_t* slots) const;
-    void count_serving(const std::uint64_t* slots);
+    void count_serving(std::span<const std::uint64_t> slots);
 
     int m_width, m_height;
     TileGrid m_tiles;
     SampleStrata m_strata;
-    std::size_t m_tile_slots;
-    std::unique_ptr<std::uint64_t[]>
-        m_slots;  ///< by tile, sample and pixel: a RayId, hidden or not
+    std::size_t m_slot_count;
+    /// By tile and pixel: for each rectangle a key, hidden or not, then for each its second.
+    std::unique_ptr<std::uint64_t[]> m_slots;
     tbb::enumerable_thread_specific<Bins> m_bins;
     std::atomic<double> m_seconds = 0.0;
     std::vector<std::uint8_t> m_in_view;      ///< by page

@@ -36,34 +36,44 @@ void TileRenderer::render(const FrameContext& frame, int tile, Film& film, NewRe
     if (frame.reuse != nullptr) {
         list_points(frame, tile, tiles.corner(tile));
         trace_own_rays(frame);
+        test_some(frame);
     }
-    for (std::size_t sample = 0; sample < frame.pattern.size(); ++sample) {
-        if (frame.reuse != nullptr) {
-            recall(frame, int(sample));
-        } else {
-            std::fill_n(m_needs_ray, m_pixels.size(), 1);
-        }
-        trace(frame, int(sample));
-        group_by_instance(frame);
-        if (frame.reuse != nullptr) add_recalled_groups();
-        m_samples.surface.size = m_count;
-        statistics.samples += std::uint64_t(m_count);
-        if (m_count == 0) continue;
-        if (frame.reuse != nullptr) m_sides.assign((frame.lights.size() / 32 + 1) * capacity, 0);
-        for (const Group& group : m_groups) {
-            if (group.recalled) {
-                shade_recalled(frame, group);
+    // Pixel by pixel: the rays of a packet stay close together, and so do the instances and, if
+    // there is a cache, the records of a batch.
+    const int samples = int(frame.pattern.size()), pixels = std::max(1, capacity / samples);
+    for (int pixel = 0; pixel < int(m_pixels.size()); pixel += pixels) {
+        for (int sample = 0; sample < samples; sample += capacity) {
+            list_batch(frame, pixel, sample);
+            if (frame.reuse != nullptr) {
+                recall(frame);
             } else {
-                shade_new(frame, group, found);
+                std::fill_n(m_needs_ray, m_batch.size, 1);
             }
+            trace(frame);
+            group_by_instance(frame);
+            if (frame.reuse != nullptr) add_recalled_groups();
+            m_samples.surface.size = m_count;
+            statistics.samples += std::uint64_t(m_count);
+            if (m_count > 0) shade(frame, found);
         }
-        std::fill_n(m_samples.Ci[0], 3 * capacity, 0.0f);
-        for (std::size_t l = 0; l < frame.lights.size(); ++l) light(frame, int(l));
-        close(frame);
-        if (frame.reuse != nullptr) keep_light(frame, found);
-        accumulate(frame, frame.pattern[sample]);
     }
     resolve(frame, film);
+}
+
+void TileRenderer::shade(const FrameContext& frame, NewRecords& found) {
+    if (frame.reuse != nullptr) m_sides.assign((frame.lights.size() / 32 + 1) * capacity, 0);
+    for (const Group& group : m_groups) {
+        if (group.recalled) {
+            shade_recalled(frame, group);
+        } else {
+            shade_new(frame, group, found);
+        }
+    }
+    std::fill_n(m_samples.Ci[0], 3 * capacity, 0.0f);
+    for (std::size_t l = 0; l < frame.lights.size(); ++l) light(frame, int(l));
+    close(frame);
+    if (frame.reuse != nullptr) keep_light(frame, found);
+    accumulate(frame);
 }
 
 void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corner) {
@@ -86,29 +96,40 @@ void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corn
     m_numbers.resize(count);
 }
 
-/// Finds what the samples of a pass see that are not recalled.
-void TileRenderer::trace(const FrameContext& frame, int sample) {
+/// Samples of the pixels from the first on, as many as a batch holds.
+void TileRenderer::list_batch(const FrameContext& frame, int first_pixel, int first_sample) {
+    const int samples = std::min(int(frame.pattern.size()) - first_sample, capacity);
+    const int pixels = std::min(int(m_pixels.size()) - first_pixel, capacity / samples);
+    m_batch.size = 0;
+    for (int i = 0; i < pixels; ++i) {
+        for (int s = 0; s < samples; ++s) m_batch.push(first_pixel + i, first_sample + s);
+    }
+}
+
+/// Finds what the samples of a batch see that are not recalled.
+void TileRenderer::trace(const FrameContext& frame) {
     const Stopwatch time;
-    const glm::vec2 offset = frame.pattern[std::size_t(sample)];
     m_ray_count = 0;
-    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        if (m_needs_ray[i] == 0 || own_hit(frame, sample, i) != nullptr) continue;
-        m_x[m_ray_count] = float(m_pixels[i].x) + offset.x;
-        m_y[m_ray_count] = float(m_pixels[i].y) + offset.y;
-        m_ray_pixel[m_ray_count++] = int(i);
+    for (int lane = 0; lane < m_batch.size; ++lane) {
+        if (m_needs_ray[lane] == 0 || own_hit(frame, lane) != nullptr) continue;
+        const glm::vec2 at = glm::vec2(m_pixels[std::size_t(m_batch.pixel[lane])]) +
+                             frame.pattern[std::size_t(m_batch.sample[lane])];
+        m_x[m_ray_count] = at.x;
+        m_y[m_ray_count] = at.y;
+        m_ray_lane[m_ray_count++] = lane;
     }
     frame.camera.primary_rays(m_x, m_y, m_ray_count, m_rays);
     frame.rays.intersect(m_rays, m_hits);
     statistics.primary_rays += std::uint64_t(m_ray_count);
     if (frame.reuse != nullptr) {
-        for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-            const Hit* const hit = m_needs_ray[i] != 0 ? own_hit(frame, sample, i) : nullptr;
+        for (int lane = 0; lane < m_batch.size; ++lane) {
+            const Hit* const hit = m_needs_ray[lane] != 0 ? own_hit(frame, lane) : nullptr;
             if (hit == nullptr) continue;
             m_hits.instance[m_ray_count] = hit->instance;
             m_hits.triangle[m_ray_count] = hit->triangle;
             m_hits.b1[m_ray_count] = hit->b1;
             m_hits.b2[m_ray_count] = hit->b2;
-            m_ray_pixel[m_ray_count++] = int(i);
+            m_ray_lane[m_ray_count++] = lane;
         }
     }
     statistics.ray_seconds += time.seconds();
@@ -222,7 +243,8 @@ void TileRenderer::interpolate(const FrameContext& frame, const Group& group) {
             const glm::uvec3 t = mesh.triangles[triangle];
             const float b1 = m_hits.b1[i], b2 = m_hits.b2[i], b0 = 1.0f - b1 - b2;
             const glm::vec3 g = Ng[triangle];
-            m_samples.pixel[j] = m_ray_pixel[i];
+            m_samples.pixel[j] = m_batch.pixel[m_ray_lane[i]];
+            m_samples.number[j] = m_batch.sample[m_ray_lane[i]];
             put(surface.P, j, b0 * mesh.P[t.x] + b1 * mesh.P[t.y] + b2 * mesh.P[t.z]);
             put(m_samples.Ng_object, j, g);
             put(surface.N, j, N ? b0 * N[t.x] + b1 * N[t.y] + b2 * N[t.z] : g);

@@ -72,6 +72,18 @@ private:
         std::uint32_t instance;
         int first, last;
         bool recalled;
+        bool dark = false;  ///< the light that is being added makes nothing on it
+    };
+    /// Samples that are worked on together.
+    struct Batch {
+        int size = 0;
+        int pixel[capacity];   ///< index into m_pixels
+        int sample[capacity];  ///< of the pattern
+
+        void push(int of_pixel, int of_pattern) noexcept {
+            pixel[size] = of_pixel;
+            sample[size++] = of_pattern;
+        }
     };
     /// What the cache has for a sample of a tile.
     struct Listed {
@@ -80,12 +92,13 @@ private:
         const float* second = nullptr;  ///< of another point in the same rectangle, or null
         int instance = 0;
         bool was_hidden = false, at_outline = false;
-        bool seen = false;  ///< the sample's own ray meets the surface that the point lies on
+        bool seen = false;     ///< a ray has told that nothing hides it
+        bool blocked = false;  ///< a ray has told that something does
         int own = -1;       ///< of m_own_hits: what that ray meets; -1: it has not been traced
     };
-    /// Points of the cache that may stand in for samples of a pass, ordered by instance.
+    /// Points of the cache that may stand in for samples of a batch, ordered by instance.
     struct alignas(64) Candidates {
-        int pixel[capacity];
+        int lane[capacity];  ///< of the batch
         RayId id[capacity];
         const float* record[capacity];
         const float* second[capacity];  ///< null: none
@@ -93,12 +106,13 @@ private:
         int was_front[capacity];  ///< -1: seen from any side
         Planes P_object, Ng_object;
         int usable[capacity];   ///< 1: seen from the side from which it was shaded
-        int seen[capacity];     ///< 1: nothing hides it, without a ray of its own
+        int known[capacity];    ///< 1: whether something hides it is known without a ray
         int blocked[capacity];  ///< 1: something hides it
     };
-    /// The samples of a pass, ordered by group.
+    /// The samples of a batch that see something, ordered by group.
     struct alignas(64) Samples {
         int pixel[capacity];    ///< index into m_pixels
+        int number[capacity];   ///< in the pattern
         SurfaceBatch surface;   ///< object space
         Planes Ng_object;       ///< geometric normal, unit, object space
         Planes P;               ///< world
@@ -136,19 +150,28 @@ private:
     void clear_sums(const FrameContext& frame);
     void list_pixels(const FrameContext& frame, const glm::ivec2& corner);
     void list_points(const FrameContext& frame, int tile, const glm::ivec2& corner);
-    void recall(const FrameContext& frame, int sample);
-    void list_candidates(const FrameContext& frame, int sample);
-    void aim_at_candidates(const FrameContext& frame);
     void trace_own_rays(const FrameContext& frame);
+    void test_some(const FrameContext& frame);
+    void spread_doubt(const bool* hides);
+    void recall(const FrameContext& frame);
+    void list_candidates(const FrameContext& frame);
+    void aim_at_candidates(const FrameContext& frame);
+    void test_candidates(const FrameContext& frame);
     bool lies_on(const FrameContext& frame, const Listed& point, const Hit& hit,
                  const glm::vec3& P) const;
-    const Hit* own_hit(const FrameContext& frame, int sample, std::size_t pixel) const {
+    Listed& listed(const FrameContext& frame, int pixel, int sample) {
+        const auto number = std::size_t(m_numbers[std::size_t(pixel)]);
+        return m_listed[number * frame.pattern.size() + std::size_t(sample)];
+    }
+    const Hit* own_hit(const FrameContext& frame, int lane) {
         if (frame.reuse == nullptr) return nullptr;
-        const int own = m_listed[std::size_t(sample * capacity + m_numbers[pixel])].own;
+        const int own = listed(frame, m_batch.pixel[lane], m_batch.sample[lane]).own;
         return own < 0 ? nullptr : &m_own_hits[std::size_t(own)];
     }
     void take_visible(const FrameContext& frame);
-    void trace(const FrameContext& frame, int sample);
+    void list_batch(const FrameContext& frame, int first_pixel, int first_sample);
+    void trace(const FrameContext& frame);
+    void shade(const FrameContext& frame, NewRecords& found);
     void group_by_instance(const FrameContext& frame);
     int sort_by_instance(const FrameContext& frame, const std::uint32_t* instances, int count,
                          std::vector<Group>& groups, int* order);
@@ -174,12 +197,13 @@ private:
     void reach_samples(const FrameContext& frame, const Group& group, const PosedLight& light);
     void want_shadows(const FrameContext& frame);
     void trace_shadows(const FrameContext& frame, const PosedLight& light);
+    bool sees(const Group& group, int light) const;
     void recall_visibility(int light);
     void add_light();
     void close(const FrameContext& frame);
     void view(const FrameContext& frame, bool lit, Planes& Ci);
-    void accumulate(const FrameContext& frame, const glm::vec2& offset);
-    void accumulate_places(const glm::vec2& own);
+    void accumulate(const FrameContext& frame);
+    void accumulate_places(const FrameContext& frame);
     PlaceMoments places_of(const FrameContext& frame, int pixel) const;
     void resolve(const FrameContext& frame, Film& film);
     void weigh_by_place(const FrameContext& frame);
@@ -190,8 +214,9 @@ private:
     std::vector<glm::ivec2> m_pixels;
     std::vector<int> m_numbers;  ///< of m_pixels in the tile: tiles may reach beyond the image
     PixelSums m_sums;
-    int m_needs_ray[capacity];  ///< by pixel; 1 or 0
-    int m_ray_pixel[capacity];  ///< of each primary ray
+    Batch m_batch;
+    int m_needs_ray[capacity];  ///< by lane; 1 or 0
+    int m_ray_lane[capacity];   ///< of each primary ray
     int m_ray_count = 0;
     Plane m_x, m_y;  ///< where the rays go through the image
     RayBatch m_rays;
@@ -200,7 +225,8 @@ private:
     std::vector<Group> m_groups;
     int m_order[capacity];         ///< hit of each sample, or candidate of a recalled one
     int m_count = 0;               ///< samples
-    std::vector<Listed> m_listed;  ///< by sample and number of the pixel in the tile
+    std::vector<Listed> m_listed;  ///< by number of the pixel in the tile and sample
+    bool m_doubtful[capacity];     ///< by pixel: all its points are tested for occlusion
     std::vector<Hit> m_own_hits;
     OutlineFinder m_outlines;
     Candidates m_candidates;

@@ -40,15 +40,18 @@ void TileRenderer::clear_sums(const FrameContext& frame) {
     std::fill_n(m_sums.depth, capacity, 0.0f);
 }
 
-/// @param offset  of the pattern's sample in the pixel
-void TileRenderer::accumulate(const FrameContext& frame, const glm::vec2& offset) {
+void TileRenderer::accumulate(const FrameContext& frame) {
     const Samples& s = m_samples;
-    for (int j = 0; j < m_count; ++j) {
-        const int pixel = s.pixel[j];
-        ++m_sums.hits[pixel];
-        for (int c = 0; c < 3; ++c) m_sums.color[c][pixel] += s.Ci[c][j];
+    for (int j = 0; j < m_count;) {  // neighbours are mostly of one pixel
+        const int pixel = s.pixel[j], first = j;
+        glm::vec3 color(0.0f);
+        do {
+            color += at(s.Ci, j++);
+        } while (j < m_count && s.pixel[j] == pixel);
+        m_sums.hits[pixel] += j - first;
+        for (int c = 0; c < 3; ++c) m_sums.color[c][pixel] += color[c];
     }
-    if (frame.reuse != nullptr) accumulate_places(offset - 0.5f);
+    if (frame.reuse != nullptr) accumulate_places(frame);
     if (!frame.settings.aovs.any()) return;
     for (const Group& group : m_groups) {
         const int albedo = color_offset(shading_of(frame, group).shader->info());
@@ -67,26 +70,38 @@ void TileRenderer::accumulate(const FrameContext& frame, const glm::vec2& offset
 }
 
 /// What places_of() and the weights need of where the samples lie.
-/// @param own  place of the pattern's sample, from the pixel's centre
-void TileRenderer::accumulate_places(const glm::vec2& own) {
+void TileRenderer::accumulate_places(const FrameContext& frame) {
     const Samples& s = m_samples;
     for (const Group& group : m_groups) {
-        for (int j = group.first; j < group.last; ++j) {
+        for (int j = group.first; j < group.last;) {
             const int pixel = s.pixel[j];
-            const float x = group.recalled ? s.x[j] : own.x, y = group.recalled ? s.y[j] : own.y;
-            m_sums.hit_x[pixel] += x;
-            m_sums.hit_y[pixel] += y;
+            glm::vec2 sum(0.0f);
+            glm::vec3 color_x(0.0f), color_y(0.0f);
+            float moved[5] = {};
+            int recalled = 0;
+            do {
+                const glm::vec2 own = frame.pattern[std::size_t(s.number[j])] - 0.5f;
+                const glm::vec2 p = group.recalled ? glm::vec2(s.x[j], s.y[j]) : own;
+                const glm::vec3 Ci = at(s.Ci, j);
+                sum += p;
+                color_x += p.x * Ci;
+                color_y += p.y * Ci;
+                moved[0] += p.x - own.x;
+                moved[1] += p.y - own.y;
+                moved[2] += p.x * p.x - own.x * own.x;
+                moved[3] += p.x * p.y - own.x * own.y;
+                moved[4] += p.y * p.y - own.y * own.y;
+                recalled += group.recalled ? 1 : 0;
+                ++j;
+            } while (j < group.last && s.pixel[j] == pixel);
+            m_sums.hit_x[pixel] += sum.x;
+            m_sums.hit_y[pixel] += sum.y;
             for (int c = 0; c < 3; ++c) {
-                m_sums.color_x[c][pixel] += x * s.Ci[c][j];
-                m_sums.color_y[c][pixel] += y * s.Ci[c][j];
+                m_sums.color_x[c][pixel] += color_x[c];
+                m_sums.color_y[c][pixel] += color_y[c];
             }
-            if (!group.recalled) continue;
-            ++m_sums.recalled[pixel];
-            m_sums.moved[0][pixel] += x - own.x;
-            m_sums.moved[1][pixel] += y - own.y;
-            m_sums.moved[2][pixel] += x * x - own.x * own.x;
-            m_sums.moved[3][pixel] += x * y - own.x * own.y;
-            m_sums.moved[4][pixel] += y * y - own.y * own.y;
+            for (int m = 0; m < 5; ++m) m_sums.moved[m][pixel] += moved[m];
+            m_sums.recalled[pixel] += recalled;
         }
     }
 }

@@ -13,6 +13,9 @@ namespace {
 /// or not: a light's error is at most this, a quarter of an 8-bit picture's darkest step.
 constexpr float negligible_gloss = 0x1p-14f;
 
+/// Of a light among a record's bits: the first tells the side of the point itself.
+constexpr int place_of_light(int light) noexcept { return light + 1; }
+
 }  // namespace
 
 /// Starts E: what is baked, or nothing yet. Baked is the front of the surface, outside of shadow
@@ -44,12 +47,12 @@ void TileRenderer::look_up_irradiance(const FrameContext& frame, const Group& gr
 void TileRenderer::light(const FrameContext& frame, int number) {
     const PosedLight& light = frame.lights[std::size_t(number)];
     const Stopwatch time;
-    for (const Group& group : m_groups) {
-        // Of a point whose light is kept only highlights are asked for.
+    for (Group& group : m_groups) {
+        // Of a point whose light is kept only highlights are asked for, where the light is visible.
         const bool kept =
             group.recalled && frame.reuse->cache().layout(int(group.instance)).is_lit();
-        if (kept && !shading_of(frame, group).shader->glossy()) continue;
-        reach_samples(frame, group, light);
+        group.dark = kept && !(shading_of(frame, group).shader->glossy() && sees(group, number));
+        if (!group.dark) reach_samples(frame, group, light);
     }
     statistics.light_seconds += time.seconds();
     view(frame, true, m_reach.gloss);
@@ -65,9 +68,18 @@ void TileRenderer::light(const FrameContext& frame, int number) {
     statistics.light_seconds += sum.seconds();
 }
 
+/// Whether a light is visible from any of a group's recalled samples.
+bool TileRenderer::sees(const Group& group, int light) const {
+    const int place = place_of_light(light);
+    const std::uint32_t* const words = m_sides.data() + place / 32 * capacity;
+    std::uint32_t any = 0;
+    for (int j = group.first; j < group.last; ++j) any |= words[j];
+    return (any >> place % 32 & 1u) != 0;
+}
+
 /// Recalled samples are told whether the light is visible, the others tell.
 void TileRenderer::recall_visibility(int light) {
-    const int place = light + 1;  // the first bit is the side of the point itself
+    const int place = place_of_light(light);
     std::uint32_t* const words = m_sides.data() + place / 32 * capacity;
     wide([=, samples = &m_samples, reach = &m_reach, count = m_count, bit = place % 32]()
              ESTARA_LOOP {
@@ -108,6 +120,7 @@ void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
     });
 }
 
+/// Which samples a light reaches if nothing is in its way, and for which that is to be found out.
 void TileRenderer::want_shadows(const FrameContext& frame) {
     const float least = negligible_gloss / std::exp2(frame.settings.exposure);
     wide([samples = &m_samples, reach = &m_reach, count = m_count, least]() ESTARA_LOOP {
@@ -119,6 +132,7 @@ void TileRenderer::want_shadows(const FrameContext& frame) {
             const bool reached = (Cl.x > 0.0f) | (Cl.y > 0.0f) | (Cl.z > 0.0f);
             const bool open = (samples->kept[j] == 0) & (glossy | (samples->baked_E[j] == 0));
             reach->wanted[j] = reached & open ? 1 : 0;
+            reach->visible[j] = reached ? 1 : 0;
         }
     });
 }
@@ -126,7 +140,6 @@ void TileRenderer::want_shadows(const FrameContext& frame) {
 void TileRenderer::trace_shadows(const FrameContext& frame, const PosedLight& light) {
     m_rays.size = 0;
     for (int j = 0; j < m_count; ++j) {
-        m_reach.visible[j] = 1;
         if (!m_reach.wanted[j]) continue;
         m_shadow_sample[m_rays.size] = j;
         m_rays.push(shadow_ray(light, at(m_reach.origin, j), at(m_samples.seen.L, j)));
@@ -171,7 +184,7 @@ void TileRenderer::close(const FrameContext& frame) {
 void TileRenderer::view(const FrameContext& frame, bool lit, Planes& Ci) {
     for (const Group& group : m_groups) {
         const BoundShader& shader = *shading_of(frame, group).shader;
-        if (lit && !shader.glossy()) {
+        if (lit && (group.dark || !shader.glossy())) {
             for (Plane& plane : Ci) std::fill(plane + group.first, plane + group.last, 0.0f);
             continue;
         }

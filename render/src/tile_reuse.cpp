@@ -7,6 +7,15 @@
 #include "tile.h"
 
 namespace estara {
+namespace {
+
+/// A record takes two or three lines of the processor's caches: the first two.
+void prefetch_record(const float* record) noexcept {
+    __builtin_prefetch(record);
+    __builtin_prefetch(record + 16);
+}
+
+}  // namespace
 
 /// Lists the points that the cache has for a tile's samples, and finds the outlines between them.
 void TileRenderer::list_points(const FrameContext& frame, int tile, const glm::ivec2& corner) {
@@ -36,23 +45,22 @@ void TileRenderer::list_points(const FrameContext& frame, int tile, const glm::i
         for (int pixel_x = 0; pixel_x < size.x; ++pixel_x) {
             const int number = TileGrid::number(pixel_x, pixel_y);
             for (int column = 0; column < strata.columns(); ++column) {
-                const int sample = strata.sample(first_stratum + column);
-                Listed& one = m_listed[std::size_t(sample * capacity + number)];
+                const int rectangle = first_stratum + column, sample = strata.sample(rectangle);
+                Listed& one = m_listed[std::size_t(number * strata.count() + sample)];
                 row[cell++] = &one;
                 one = {};
-                const Reprojection::Candidate found = reuse.candidate(tile, number, sample);
+                const Reprojection::Candidate found = reuse.candidate(tile, number, rectangle);
                 if (!found.exists) continue;
                 const ReuseCache::Page& page = cache.page(found.id.page());
                 one.id = found.id;
                 one.record = page.record(found.id.index());
                 one.instance = page.instance;
                 one.was_hidden = found.was_hidden;
-                __builtin_prefetch(one.record);
+                prefetch_record(one.record);
                 if (!found.has_second) continue;
                 const ReuseCache::Page& other = cache.page(found.second.page());
                 if (other.instance != one.instance) continue;
                 one.second = other.record(found.second.index());
-                __builtin_prefetch(one.second);
             }
         }
         for (int x = 0; x < across; ++x) {
@@ -79,7 +87,7 @@ void TileRenderer::list_points(const FrameContext& frame, int tile, const glm::i
 ///
 /// At an outline the sample's own ray tells which surface it sees: how much of a pixel each surface
 /// takes is for the pattern to say, or points of the one that has more of them, or older ones,
-/// would win too often. All passes' rays together, pixel by pixel: they stay close to each other.
+/// would win too often. All of a tile's rays together, pixel by pixel: they stay close to each other.
 void TileRenderer::trace_own_rays(const FrameContext& frame) {
     const Stopwatch time;
     ReuseCache& cache = frame.reuse->cache();
@@ -90,6 +98,12 @@ void TileRenderer::trace_own_rays(const FrameContext& frame) {
         frame.camera.primary_rays(m_x, m_y, count, m_rays);
         frame.rays.intersect(m_rays, m_hits);
         statistics.primary_rays += std::uint64_t(count);
+        for (int r = 0; r < count; ++r) {
+            if (m_hits.instance[r] == Hit::none || waiting[r]->record == nullptr) continue;
+            const int object = frame.instances[m_hits.instance[r]].object;
+            __builtin_prefetch(&frame.face_normals[std::size_t(object)][m_hits.triangle[r]]);
+            prefetch_record(waiting[r]->record);
+        }
         for (int r = 0; r < count; ++r) {
             Listed& point = *waiting[r];
             const Hit hit{m_hits.instance[r], m_hits.triangle[r], m_hits.b1[r], m_hits.b2[r],
@@ -103,12 +117,14 @@ void TileRenderer::trace_own_rays(const FrameContext& frame) {
         }
         count = 0;
     };
-    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        for (std::size_t sample = 0; sample < frame.pattern.size(); ++sample) {
-            Listed& point = m_listed[sample * capacity + std::size_t(m_numbers[i])];
+    for (int i = 0; i < int(m_pixels.size()); ++i) {
+        for (int sample = 0; sample < int(frame.pattern.size()); ++sample) {
+            Listed& point = listed(frame, i, sample);
             if (point.record != nullptr && !point.at_outline) continue;
-            m_x[count] = float(m_pixels[i].x) + frame.pattern[sample].x;
-            m_y[count] = float(m_pixels[i].y) + frame.pattern[sample].y;
+            const glm::vec2 at =
+                glm::vec2(m_pixels[std::size_t(i)]) + frame.pattern[std::size_t(sample)];
+            m_x[count] = at.x;
+            m_y[count] = at.y;
             waiting[count++] = &point;
             if (count == capacity) trace_some();
         }
@@ -136,57 +152,118 @@ bool TileRenderer::lies_on(const FrameContext& frame, const Listed& point, const
     return glm::dot(n, Ng) > least && off * off < width * width * glm::dot(n_world, n_world);
 }
 
-/// Finds out which samples of a pass are recalled; the others need a ray.
-void TileRenderer::recall(const FrameContext& frame, int sample) {
+/// Tests a share of each pixel's points for occlusion, and marks the pixels where the others are to
+/// be tested too: those with a hidden point, and those beside them.
+///
+/// What hides a point was mostly seen in earlier frames and has points of its own there: then its
+/// outline has been found. What comes into view without having been seen is found by these tests,
+/// unless it is smaller than a pixel: of m tests none may meet what covers the
+/// share c of one pixel and nothing beside it, with a probability of (1 - c)^m at most. So c (1 - c)^m
+/// of a pixel may be expected to be missing, .082 at most for 4 tests (c = 1/5). In the next frame
+/// other samples are tested: after `period` frames all of them have been.
+void TileRenderer::test_some(const FrameContext& frame) {
+    const int samples = int(frame.pattern.size());
+    const int period = frame.settings.test_all_points ? 1 : std::clamp(samples / 4, 1, 4);
+    std::fill_n(m_doubtful, capacity, true);
+    if (period == 1) return;
+    bool hides[capacity] = {};  // by pixel: something hides one of its points
+    m_batch.size = 0;
+    const auto test = [&] {
+        list_candidates(frame);
+        aim_at_candidates(frame);
+        test_candidates(frame);
+        for (int c = 0; c < m_candidate_count; ++c) {
+            const int pixel = m_batch.pixel[m_candidates.lane[c]];
+            Listed& one = listed(frame, pixel, m_batch.sample[m_candidates.lane[c]]);
+            one.seen = m_candidates.blocked[c] == 0;
+            one.blocked = !one.seen;
+            hides[pixel] |= one.blocked || m_candidates.usable[c] == 0;
+        }
+        m_batch.size = 0;
+    };
     const Stopwatch time;
-    list_candidates(frame, sample);
-    aim_at_candidates(frame);
-    double listing = time.seconds();
-    const Stopwatch rays;
-    frame.rays.occluded(m_rays, m_blocked.data());
-    statistics.ray_seconds += rays.seconds();
-    statistics.reuse.rays += std::uint64_t(m_rays.size);
-    const Stopwatch taking;
-    std::fill_n(m_candidates.blocked, m_candidate_count, 0);
-    for (int r = 0; r < m_rays.size; ++r) {
-        m_candidates.blocked[m_candidate_of_ray[r]] = m_blocked[std::size_t(r)];
+    const double rays_before = statistics.ray_seconds;
+    for (int i = 0; i < int(m_pixels.size()); ++i) {
+        const glm::ivec2 pixel = m_pixels[std::size_t(i)];
+        const int phase = (frame.reuse->cache().frame() + pixel.x + 2 * pixel.y) % period;
+        for (int sample = 0; sample < samples; ++sample) {
+            // The pattern is even along one axis in the samples' order, and along the other in
+            // that of their last bits: so are these.
+            if ((sample + 3 * (sample / period) + phase) % period != 0) continue;
+            const Listed& one = listed(frame, i, sample);
+            if (one.record == nullptr || one.at_outline) continue;
+            m_batch.push(i, sample);
+            if (m_batch.size == capacity) test();
+        }
     }
-    take_visible(frame);
-    listing += taking.seconds();
-    statistics.evaluation_seconds += listing;
-    statistics.reuse.listing_seconds += listing;
+    if (m_batch.size > 0) test();
+    spread_doubt(hides);
+    const double seconds = time.seconds() - (statistics.ray_seconds - rays_before);
+    statistics.evaluation_seconds += seconds;
+    statistics.reuse.listing_seconds += seconds;
 }
 
-void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
-    thread_local std::uint32_t instance[capacity];
-    thread_local int pixel[capacity], order[capacity];
-    const ReuseCache& cache = frame.reuse->cache();
-    const Listed* const listed = m_listed.data() + std::size_t(sample * capacity);
-    int count = 0;
+/// @param hides  by pixel: it is doubtful, and so are those beside it
+void TileRenderer::spread_doubt(const bool* hides) {
+    constexpr int width = TileGrid::width, height = TileGrid::height;
+    bool raster[height + 2][width + 2] = {};
     for (std::size_t i = 0; i < m_pixels.size(); ++i) {
-        const Listed& one = listed[m_numbers[i]];
-        m_needs_ray[i] = 1;
-        if (one.record == nullptr) {
-            ++statistics.reuse.misses;
-            continue;
+        const glm::ivec2 at = TileGrid::place(m_numbers[i]);
+        raster[at.y + 1][at.x + 1] = hides[i];
+    }
+    for (std::size_t i = 0; i < m_pixels.size(); ++i) {
+        const glm::ivec2 at = TileGrid::place(m_numbers[i]);
+        m_doubtful[i] = false;
+        for (int y = 0; y < 3; ++y) {
+            for (int x = 0; x < 3; ++x) m_doubtful[i] |= raster[at.y + y][at.x + x];
         }
-        if (one.at_outline && !one.seen) {
-            ++statistics.reuse.beside;
-            continue;
-        }
-        __builtin_prefetch(one.record);
+    }
+}
+
+/// Finds out which samples of a batch are recalled; the others need a ray.
+void TileRenderer::recall(const FrameContext& frame) {
+    const Stopwatch time;
+    std::fill_n(m_needs_ray, m_batch.size, 1);
+    for (int lane = 0; lane < m_batch.size; ++lane) {
+        const Listed& one = listed(frame, m_batch.pixel[lane], m_batch.sample[lane]);
+        statistics.reuse.misses += one.record == nullptr ? 1 : 0;
+        statistics.reuse.beside += one.record != nullptr && one.at_outline && !one.seen ? 1 : 0;
+    }
+    list_candidates(frame);
+    aim_at_candidates(frame);
+    const double listing = time.seconds();
+    test_candidates(frame);
+    const Stopwatch taking;
+    take_visible(frame);
+    const double seconds = listing + taking.seconds();
+    statistics.evaluation_seconds += seconds;
+    statistics.reuse.listing_seconds += seconds;
+}
+
+/// Of a batch's samples those with a point that may be seen.
+void TileRenderer::list_candidates(const FrameContext& frame) {
+    thread_local std::uint32_t instance[capacity];
+    thread_local int lanes[capacity], order[capacity];
+    const ReuseCache& cache = frame.reuse->cache();
+    int count = 0;
+    for (int lane = 0; lane < m_batch.size; ++lane) {
+        const Listed& one = listed(frame, m_batch.pixel[lane], m_batch.sample[lane]);
+        if (one.record == nullptr || (one.at_outline && !one.seen)) continue;
+        prefetch_record(one.record);
+        if (one.second != nullptr && !one.at_outline) prefetch_record(one.second);
         instance[count] = std::uint32_t(one.instance);
-        pixel[count++] = int(i);
+        lanes[count++] = lane;
     }
     m_candidate_groups.clear();
     m_candidate_count = sort_by_instance(frame, instance, count, m_candidate_groups, order);
     for (const Group& group : m_candidate_groups) {
         const RecordLayout layout = cache.layout(int(group.instance));
         for (int c = group.first; c < group.last; ++c) {
-            const int i = pixel[order[c]];
-            const Listed& one = listed[m_numbers[std::size_t(i)]];
+            const int lane = lanes[order[c]];
+            const int pixel = m_batch.pixel[lane];
+            const Listed& one = listed(frame, pixel, m_batch.sample[lane]);
             const float* const record = one.record;
-            m_candidates.pixel[c] = i;
+            m_candidates.lane[c] = lane;
             m_candidates.id[c] = one.id;
             m_candidates.record[c] = record;
             m_candidates.second[c] = one.at_outline ? nullptr : one.second;
@@ -194,7 +271,11 @@ void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
             m_candidates.was_front[c] =
                 layout.is_lit() ? int(std::bit_cast<std::uint32_t>(record[layout.sides()]) & 1u)
                                 : -1;
-            m_candidates.seen[c] = one.seen ? 1 : 0;
+            const bool told = one.seen || one.blocked;
+            const bool trusted = !told && !m_doubtful[pixel] && !one.was_hidden;
+            m_candidates.known[c] = told || trusted ? 1 : 0;
+            statistics.reuse.untested += trusted ? 1 : 0;
+            m_candidates.blocked[c] = one.blocked ? 1 : 0;
             put(m_candidates.P_object, c, {record[0], record[1], record[2]});
             constexpr int Ng = RecordLayout::Ng;
             put(m_candidates.Ng_object, c, {record[Ng], record[Ng + 1], record[Ng + 2]});
@@ -202,7 +283,7 @@ void TileRenderer::list_candidates(const FrameContext& frame, int sample) {
     }
 }
 
-/// A ray to the eye from every candidate that is not known to be seen. It starts off the surface by
+/// A ray to the eye from every candidate of which it is not known whether it is hidden. It starts off the surface by
 /// the bound of SurfaceOffset, on the side of the eye, so the surface itself is not met and what is
 /// near is not skipped.
 void TileRenderer::aim_at_candidates(const FrameContext& frame) {
@@ -234,12 +315,22 @@ void TileRenderer::aim_at_candidates(const FrameContext& frame) {
     }
     m_rays.size = 0;
     for (int c = 0; c < m_candidate_count; ++c) {
-        if (m_candidates.seen[c] != 0) continue;
+        if (m_candidates.known[c] != 0) continue;
         const int r = m_rays.size++;
         m_candidate_of_ray[r] = c;
         if (r == c) continue;
         put(m_rays.origin, r, at(m_rays.origin, c));
         put(m_rays.direction, r, at(m_rays.direction, c));
+    }
+}
+
+void TileRenderer::test_candidates(const FrameContext& frame) {
+    const Stopwatch rays;
+    frame.rays.occluded(m_rays, m_blocked.data());
+    statistics.ray_seconds += rays.seconds();
+    statistics.reuse.rays += std::uint64_t(m_rays.size);
+    for (int r = 0; r < m_rays.size; ++r) {
+        m_candidates.blocked[m_candidate_of_ray[r]] = m_blocked[std::size_t(r)];
     }
 }
 
@@ -250,7 +341,7 @@ void TileRenderer::take_visible(const FrameContext& frame) {
     for (Group& group : m_candidate_groups) {
         const int first = taken;
         for (int c = group.first; c < group.last; ++c) {
-            const int pixel = m_candidates.pixel[c];
+            const int lane = m_candidates.lane[c];
             const bool usable = m_candidates.usable[c] != 0, blocked = m_candidates.blocked[c] != 0;
             // From the wrong side it is of as little use: both yield to others next time.
             const bool hidden = blocked || !usable;
@@ -258,18 +349,18 @@ void TileRenderer::take_visible(const FrameContext& frame) {
                 cache.set_hidden(m_candidates.id[c], hidden);
             }
             if (usable && !blocked) {
-                m_needs_ray[pixel] = 0;
+                m_needs_ray[lane] = 0;
                 m_candidate_order[taken++] = c;
                 continue;
             }
-            m_sums.occluded[pixel] += usable ? 1 : 0;
+            m_sums.occluded[m_batch.pixel[lane]] += usable ? 1 : 0;
             ++(usable ? statistics.reuse.occluded : statistics.reuse.turned);
         }
         group.first = first;
         group.last = taken;
     }
     statistics.reuse.hits += std::uint64_t(taken);
-    statistics.reuse.refilled += std::uint64_t(m_pixels.size()) - std::uint64_t(taken);
+    statistics.reuse.refilled += std::uint64_t(m_batch.size - taken);
 }
 
 /// Behind those of new hits.
@@ -290,7 +381,8 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
     for (int j = group.first; j < group.last; ++j) {
         const int c = m_order[j];
         const float* const record = m_candidates.record[c];
-        m_samples.pixel[j] = m_candidates.pixel[c];
+        m_samples.pixel[j] = m_batch.pixel[m_candidates.lane[c]];
+        m_samples.number[j] = m_batch.sample[m_candidates.lane[c]];
         m_samples.age[j] = cache.frame() - m_candidates.id[c].born();
         m_row[j] = -1;
         put(m_samples.surface.P, j, at(m_candidates.P_object, c));

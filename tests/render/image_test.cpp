@@ -6,6 +6,7 @@
 #include <map>
 
 #include "estara/render/image_queue.h"
+#include "read_image.h"
 #include "small_scene.h"
 
 namespace estara {
@@ -13,6 +14,8 @@ namespace {
 
 using test::error_of;
 using test::Folder;
+using test::read_image;
+using test::ReadImage;
 
 /// A film whose every value tells where it is.
 Film numbered_film() {
@@ -28,27 +31,10 @@ Film numbered_film() {
     return film;
 }
 
-struct ReadImage {
-    OIIO::ImageSpec spec;
-    std::vector<float> pixels;
-    float at(int pixel, const std::string& channel) const {
-        return pixels[std::size_t(pixel * spec.nchannels + spec.channelindex(channel))];
-    }
-};
-
-ReadImage read(const std::string& path) {
-    const auto input = OIIO::ImageInput::open(path);
-    if (!input) return {};
-    ReadImage image{input->spec(), {}};
-    image.pixels.resize(image.spec.image_pixels() * std::size_t(image.spec.nchannels));
-    EXPECT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeFloat, image.pixels.data()));
-    return image;
-}
-
 TEST(Exr, HasTheNamedChannelsInTheirTypes) {
     const Folder folder;
     write_image(folder / "a.exr", ImageFormat::exr, numbered_film());
-    const ReadImage image = read(folder / "a.exr");
+    const ReadImage image = read_image(folder / "a.exr");
     std::map<std::string, OIIO::TypeDesc> types;
     for (int c = 0; c < image.spec.nchannels; ++c) {
         types[image.spec.channelnames[std::size_t(c)]] = image.spec.channelformat(c);
@@ -65,7 +51,7 @@ TEST(Exr, GivesBackWhatWasWritten) {
     const Folder folder;
     const Film film = numbered_film();
     write_image(folder / "a.exr", ImageFormat::exr, film);
-    const ReadImage image = read(folder / "a.exr");
+    const ReadImage image = read_image(folder / "a.exr");
     ASSERT_EQ(image.spec.width, 5);
     ASSERT_EQ(image.spec.height, 3);
     for (int i = 0; i < 15; ++i) {
@@ -85,7 +71,7 @@ TEST(Exr, KeepsWhatIsTooBrightForAHalfFinite) {
     Film film(1, 1, {});
     film.color[0] = {1e9f, 1.0f, 1.0f, 1.0f};
     write_image(folder / "a.exr", ImageFormat::exr, film);
-    EXPECT_EQ(read(folder / "a.exr").at(0, "R"), 65504.0f);
+    EXPECT_EQ(read_image(folder / "a.exr").at(0, "R"), 65504.0f);
 }
 
 TEST(Png, HoldsSrgbWithAlphaNotAssociated) {
@@ -130,7 +116,7 @@ TEST(ImageQueue, WritesEveryFilmInEveryPattern) {
     }
     queue.finish();
     for (int frame = 1; frame <= 7; ++frame) {
-        EXPECT_EQ(read(patterns[0].path(frame)).at(3, "R"), float(frame));
+        EXPECT_EQ(read_image(patterns[0].path(frame)).at(3, "R"), float(frame));
         EXPECT_TRUE(std::filesystem::exists(patterns[1].path(frame)));
     }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -25,11 +26,12 @@ constexpr int width = 70, height = 50;  // no multiple of a tile
 class Reused {
 public:
     explicit Reused(Scene& scene, std::uint64_t cache_bytes = 1u << 26, bool keeps_light = true,
-                    int spp = 4)
+                    int spp = 4, bool tests_all = false)
         : m_rays(scene) {
         m_settings.width = width;
         m_settings.height = height;
         m_settings.spp = spp;
+        m_settings.test_all_points = tests_all;
         m_settings.aovs.hit = m_settings.aovs.age = m_settings.aovs.occluded = true;
         m_renderer = std::make_unique<FrameRenderer>(scene, m_rays, m_settings);
         Options options;
@@ -74,9 +76,11 @@ void expect_all_samples(const Reused& reused) {
     const auto all = std::uint64_t(width * height * reused.spp());
     EXPECT_EQ(r.hits + r.refilled, all);
     EXPECT_EQ(r.refilled, r.misses + r.occluded + r.turned + r.beside);
-    // Each has its own ray, or one from its point; only after one from its point both.
-    EXPECT_GE(r.rays + reused.cost.primary_rays, all);
-    EXPECT_LE(r.rays + reused.cost.primary_rays, all + r.occluded + r.turned);
+    // Each has its own ray, or one from its point, or one of those around it has; only after one
+    // from its point both.
+    const std::uint64_t looked_at = r.rays + r.untested + reused.cost.primary_rays;
+    EXPECT_GE(looked_at, all);
+    EXPECT_LE(looked_at, all + r.occluded + r.turned);
 }
 
 /// A wooden ball and a marble one in front of a stone wall, under a sun; all of it static.
@@ -222,7 +226,83 @@ TEST(Reuse, DoesNotMixInWhatLiesBehindOnTheSameObject) {
     for (int frame = 0; frame < 12; ++frame) {
         scene.nodes[1].translation.x = 0.05f * float(frame);
         const Film film = reused.render();
-        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.004) << frame;
+        EXPECT_LT(compare_films(film, reused.direct()).rmse, 0.005) << frame;
+    }
+}
+
+/// Squares that nobody has seen before, of .25 pixels each, come in front of a wall.
+class SpecksThatAppear {
+public:
+    SpecksThatAppear() {
+        const float pixel = 8.0f * std::tan(0.4f) / float(height);
+        const auto square = [](Mesh& mesh, const glm::vec2& low, float side) {
+            const auto first = std::uint32_t(mesh.P.size());
+            for (const glm::vec2 corner : {low, low + glm::vec2(side, 0.0f), low + side,
+                                           low + glm::vec2(0.0f, side)}) {
+                mesh.P.emplace_back(corner, 0.0f);
+            }
+            mesh.triangles.push_back({first, first + 1, first + 2});
+            mesh.triangles.push_back({first, first + 2, first + 3});
+        };
+        Mesh wall, specks;
+        square(wall, glm::vec2(-8.0f), 16.0f);
+        for (int i = 0; i < 80; ++i) {  // five pixels apart, at any place in theirs
+            const glm::vec2 inside(float(i * 7 % 16), float(i * 11 % 16));
+            const glm::vec2 at(float(i % 10 * 5 - 25), float(i / 10 * 5 - 20));
+            square(specks, (at + inside / 32.0f) * pixel, 0.5f * pixel);
+        }
+        const auto ambient = [](const glm::vec3& color) {
+            return std::vector<Setting>{{"lightwood", {color.x, color.y, color.z}},
+                                        {"darkwood", {color.x, color.y, color.z}},
+                                        {"Ka", {1.0f}}};
+        };
+        scene = scene_of({object("wall", wall, "wood", ambient(glm::vec3(0.0f))),
+                          object("specks", specks, "wood", ambient(glm::vec3(1.0f)))});
+        scene.nodes.emplace_back();
+        scene.instances[1].node = 2;
+    }
+
+    /// Share of the specks that is missing in each of some frames from their first on.
+    std::vector<double> missing(bool tests_all, int frames) {
+        Reused reused(scene, 1u << 26, true, 16, tests_all);
+        scene.nodes[2].translation.z = 10.0f;  // behind the camera
+        reused.render();
+        scene.nodes[2].translation.z = 0.0001f;
+        std::vector<double> shares;
+        for (int frame = 0; frame < frames; ++frame) {
+            const Film film = reused.render();
+            expect_all_samples(reused);
+            untested = reused.cost.reuse.untested;
+            shares.push_back(1.0 - brightness(film) / brightness(reused.direct()));
+        }
+        return shares;
+    }
+
+    Scene scene;
+    std::uint64_t untested = 0;  ///< in the last frame
+
+private:
+    static double brightness(const Film& film) {
+        double sum = 0.0;
+        for (const glm::vec4& color : film.color) sum += color.x;
+        return sum;
+    }
+};
+
+TEST(Reuse, FindsSpecksThatAppearIfAllPointsAreTested) {
+    SpecksThatAppear specks;
+    EXPECT_NEAR(specks.missing(true, 1).front(), 0.0, 0.02);
+    EXPECT_EQ(specks.untested, 0u);
+}
+
+/// As tile_reuse.cpp says of its tests of some points: of 4, c = 1/4.
+TEST(Reuse, MissesSpecksThatAppearNoMoreThanItSays) {
+    SpecksThatAppear specks;
+    const std::vector<double> missing = specks.missing(false, 6);
+    EXPECT_LT(missing[0], std::pow(0.75, 4.0));
+    EXPECT_GT(specks.untested, 0u);
+    for (std::size_t frame = 4; frame < missing.size(); ++frame) {
+        EXPECT_NEAR(missing[frame], 0.0, 0.02) << frame;
     }
 }
 

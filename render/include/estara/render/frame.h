@@ -33,6 +33,7 @@ struct FrameSettings {
     std::uint32_t seed = 0;         ///< shifts the sample pattern
     float exposure = 0.0f;          ///< EV: colours times 2^exposure
     bool shadows = true;            ///< false: nothing casts a shadow, whatever the lights say
+    bool test_all_points = false;   ///< every point of the cache for occlusion, not some of a pixel
     int tile_step = 1;              ///< only every so-many-th tile is rendered, for measuring
     Aovs aovs;
 };
@@ -47,6 +48,7 @@ struct ReuseCounts {
     std::uint64_t slots = 0;          ///< samples of the whole image
     std::uint64_t rays = 0;           ///< from candidates to the eye
     std::uint64_t hits = 0;           ///< samples that a kept point stands in for
+    std::uint64_t untested = 0;       ///< of the candidates, taken to be seen without a ray
     std::uint64_t misses = 0;         ///< samples without a point
     std::uint64_t occluded = 0;       ///< with one that something hides
     std::uint64_t turned = 0;         ///< with one that is seen from its other side
