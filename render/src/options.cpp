@@ -224,9 +224,10 @@ void add_work(CLI::App& app, Options& options, Words& words) {
         ->type_name("WHEN")
         ->capture_default_str()
         ->group("Work");
-    app.add_flag_callback("--cache-test-all", [&] { options.frame.test_all_points = true; },
-                          "test every recalled hit point for occlusion, not a share of each "
-                          "pixel's and those beside a hidden one")
+    app.add_flag_callback(
+           "--cache-test-all", [&] { options.frame.test_all_points = true; },
+           "test every recalled hit point for occlusion, not a share of each "
+           "pixel's and those beside a hidden one")
         ->group("Work");
     app.add_option("--threads", options.threads, "0: one for each core")
         ->type_name("N")

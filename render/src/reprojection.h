@@ -101,8 +101,8 @@ private:
         return id;
     }
     std::uint64_t* slots_of(int tile, int pixel) const noexcept {
-        return m_slots.get() + (std::size_t(tile) * batch_capacity + std::size_t(pixel)) *
-                                   2 * std::size_t(m_strata.count());
+        return m_slots.get() + (std::size_t(tile) * batch_capacity + std::size_t(pixel)) * 2 *
+                                   std::size_t(m_strata.count());
     }
 
     /// A point that has fallen into a tile, packed: tiles hold many.

@@ -42,8 +42,9 @@ void TileRenderer::render(const FrameContext& frame, int tile, Film& film, NewRe
     // there is a cache, the records of a batch.
     const int samples = int(frame.pattern.size()), pixels = std::max(1, capacity / samples);
     for (int pixel = 0; pixel < int(m_pixels.size()); pixel += pixels) {
+        const int last_pixel = std::min(pixel + pixels, int(m_pixels.size()));
         for (int sample = 0; sample < samples; sample += capacity) {
-            list_batch(frame, pixel, sample);
+            list_batch({pixel, last_pixel}, {sample, std::min(sample + capacity, samples)});
             if (frame.reuse != nullptr) {
                 recall(frame);
             } else {
@@ -96,13 +97,11 @@ void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corn
     m_numbers.resize(count);
 }
 
-/// Samples of the pixels from the first on, as many as a batch holds.
-void TileRenderer::list_batch(const FrameContext& frame, int first_pixel, int first_sample) {
-    const int samples = std::min(int(frame.pattern.size()) - first_sample, capacity);
-    const int pixels = std::min(int(m_pixels.size()) - first_pixel, capacity / samples);
+/// @param pixels, samples  from the first to the one before the last; together no more than a batch
+void TileRenderer::list_batch(const glm::ivec2& pixels, const glm::ivec2& samples) {
     m_batch.size = 0;
-    for (int i = 0; i < pixels; ++i) {
-        for (int s = 0; s < samples; ++s) m_batch.push(first_pixel + i, first_sample + s);
+    for (int pixel = pixels[0]; pixel < pixels[1]; ++pixel) {
+        for (int sample = samples[0]; sample < samples[1]; ++sample) m_batch.push(pixel, sample);
     }
 }
 

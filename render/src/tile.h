@@ -94,7 +94,7 @@ private:
         bool was_hidden = false, at_outline = false;
         bool seen = false;     ///< a ray has told that nothing hides it
         bool blocked = false;  ///< a ray has told that something does
-        int own = -1;       ///< of m_own_hits: what that ray meets; -1: it has not been traced
+        int own = -1;          ///< of m_own_hits: what that ray meets; -1: it has not been traced
     };
     /// Points of the cache that may stand in for samples of a batch, ordered by instance.
     struct alignas(64) Candidates {
@@ -140,8 +140,8 @@ private:
         Plane depth;
         int hits[capacity];
         int recalled[capacity], age[capacity], occluded[capacity];
-        Plane covered;      ///< hits, weighted
-        int bad[capacity];  ///< 1: the colour is not finite
+        Plane covered;            ///< hits, weighted
+        int bad[capacity];        ///< 1: the colour is not finite
         Planes color_x, color_y;  ///< color, times the sample's place from the pixel's centre
         Plane hit_x, hit_y;       ///< sums of these places
         Plane moved[5];  ///< what recalled points add to the pattern's sums of x, y, xx, xy, yy
@@ -169,7 +169,7 @@ private:
         return own < 0 ? nullptr : &m_own_hits[std::size_t(own)];
     }
     void take_visible(const FrameContext& frame);
-    void list_batch(const FrameContext& frame, int first_pixel, int first_sample);
+    void list_batch(const glm::ivec2& pixels, const glm::ivec2& samples);
     void trace(const FrameContext& frame);
     void shade(const FrameContext& frame, NewRecords& found);
     void group_by_instance(const FrameContext& frame);

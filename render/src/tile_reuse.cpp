@@ -87,7 +87,8 @@ void TileRenderer::list_points(const FrameContext& frame, int tile, const glm::i
 ///
 /// At an outline the sample's own ray tells which surface it sees: how much of a pixel each surface
 /// takes is for the pattern to say, or points of the one that has more of them, or older ones,
-/// would win too often. All of a tile's rays together, pixel by pixel: they stay close to each other.
+/// would win too often. All of a tile's rays together, pixel by pixel: they stay close to each
+/// other.
 void TileRenderer::trace_own_rays(const FrameContext& frame) {
     const Stopwatch time;
     ReuseCache& cache = frame.reuse->cache();
@@ -157,10 +158,10 @@ bool TileRenderer::lies_on(const FrameContext& frame, const Listed& point, const
 ///
 /// What hides a point was mostly seen in earlier frames and has points of its own there: then its
 /// outline has been found. What comes into view without having been seen is found by these tests,
-/// unless it is smaller than a pixel: of m tests none may meet what covers the
-/// share c of one pixel and nothing beside it, with a probability of (1 - c)^m at most. So c (1 - c)^m
-/// of a pixel may be expected to be missing, .082 at most for 4 tests (c = 1/5). In the next frame
-/// other samples are tested: after `period` frames all of them have been.
+/// unless it is smaller than a pixel: of m tests none may meet what covers the share c of one pixel
+/// and nothing beside it, with a probability of (1 - c)^m at most. So c (1 - c)^m of a pixel may be
+/// expected to be missing, .082 at most for 4 tests (c = 1/5). In the next frame other samples are
+/// tested: after `period` frames all of them have been.
 void TileRenderer::test_some(const FrameContext& frame) {
     const int samples = int(frame.pattern.size());
     const int period = frame.settings.test_all_points ? 1 : std::clamp(samples / 4, 1, 4);
@@ -187,8 +188,8 @@ void TileRenderer::test_some(const FrameContext& frame) {
         const glm::ivec2 pixel = m_pixels[std::size_t(i)];
         const int phase = (frame.reuse->cache().frame() + pixel.x + 2 * pixel.y) % period;
         for (int sample = 0; sample < samples; ++sample) {
-            // The pattern is even along one axis in the samples' order, and along the other in
-            // that of their last bits: so are these.
+            // Spread over the pixel: the pattern goes along one axis in the samples' order, along
+            // the other in that of their bits from the last on.
             if ((sample + 3 * (sample / period) + phase) % period != 0) continue;
             const Listed& one = listed(frame, i, sample);
             if (one.record == nullptr || one.at_outline) continue;
@@ -283,9 +284,9 @@ void TileRenderer::list_candidates(const FrameContext& frame) {
     }
 }
 
-/// A ray to the eye from every candidate of which it is not known whether it is hidden. It starts off the surface by
-/// the bound of SurfaceOffset, on the side of the eye, so the surface itself is not met and what is
-/// near is not skipped.
+/// A ray to the eye from every candidate of which it is not known whether it is hidden. It starts
+/// off the surface by the bound of SurfaceOffset, on the side of the eye, so the surface itself is
+/// not met and what is near is not skipped.
 void TileRenderer::aim_at_candidates(const FrameContext& frame) {
     for (const Group& group : m_candidate_groups) {
         const PosedInstance& instance = frame.instances[group.instance];

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "estara/render/compare.h"
 #include "small_scene.h"
 
 namespace estara {
@@ -321,6 +322,26 @@ TEST(Frame, CountsItsRaysAndTiles) {
     for (const glm::vec4& pixel : film.color) covered += double(pixel.a);
     EXPECT_EQ(cost.samples, std::uint64_t(std::lround(covered * 4.0)));
     EXPECT_EQ(cost.lookups, 0u);
+}
+
+/// A batch holds 512 samples: many pixels, one, or a part of one.
+TEST(Frame, TakesEachSampleOnce) {
+    const Scene scene = scene_of({object("ball", sphere(1.0f, 48), "wood")});
+    FrameSettings settings = small();
+    settings.width = 38;
+    settings.height = 21;
+    settings.spp = 64;
+    const Film expected = render(scene, settings, direct(scene));
+    for (const int spp : {1, 3, 300, 512, 600, 1030}) {
+        settings.spp = spp;
+        FrameStatistics cost;
+        const Film film = render(scene, settings, direct(scene), &cost);
+        EXPECT_EQ(cost.primary_rays, std::uint64_t(settings.width * settings.height * spp)) << spp;
+        EXPECT_EQ(film.color[film.index(19, 10)].w, 1.0f) << spp;
+        if (spp >= 300) {
+            EXPECT_LT(compare_films(film, expected).rmse, 0.02) << spp;
+        }
+    }
 }
 
 TEST(Frame, OfAConstantShaderIsTheSameFromTheGrid) {

@@ -237,8 +237,8 @@ public:
         const float pixel = 8.0f * std::tan(0.4f) / float(height);
         const auto square = [](Mesh& mesh, const glm::vec2& low, float side) {
             const auto first = std::uint32_t(mesh.P.size());
-            for (const glm::vec2 corner : {low, low + glm::vec2(side, 0.0f), low + side,
-                                           low + glm::vec2(0.0f, side)}) {
+            for (const glm::vec2 corner :
+                 {low, low + glm::vec2(side, 0.0f), low + side, low + glm::vec2(0.0f, side)}) {
                 mesh.P.emplace_back(corner, 0.0f);
             }
             mesh.triangles.push_back({first, first + 1, first + 2});
