@@ -111,10 +111,7 @@ void TileRenderer::trace(const FrameContext& frame) {
     m_ray_count = 0;
     for (int lane = 0; lane < m_batch.size; ++lane) {
         if (m_needs_ray[lane] == 0 || own_hit(frame, lane) != nullptr) continue;
-        const glm::vec2 at = glm::vec2(m_pixels[std::size_t(m_batch.pixel[lane])]) +
-                             frame.pattern[std::size_t(m_batch.sample[lane])];
-        m_x[m_ray_count] = at.x;
-        m_y[m_ray_count] = at.y;
+        place_ray(frame, m_ray_count, m_batch.pixel[lane], m_batch.sample[lane]);
         m_ray_lane[m_ray_count++] = lane;
     }
     frame.camera.primary_rays(m_x, m_y, m_ray_count, m_rays);

@@ -170,6 +170,13 @@ private:
     }
     void take_visible(const FrameContext& frame);
     void list_batch(const glm::ivec2& pixels, const glm::ivec2& samples);
+    /// Where in the image the pattern's sample of a pixel lies.
+    void place_ray(const FrameContext& frame, int ray, int pixel, int sample) {
+        const glm::vec2 at =
+            glm::vec2(m_pixels[std::size_t(pixel)]) + frame.pattern[std::size_t(sample)];
+        m_x[ray] = at.x;
+        m_y[ray] = at.y;
+    }
     void trace(const FrameContext& frame);
     void shade(const FrameContext& frame, NewRecords& found);
     void group_by_instance(const FrameContext& frame);

@@ -74,11 +74,10 @@ void TileRenderer::accumulate_places(const FrameContext& frame) {
     const Samples& s = m_samples;
     for (const Group& group : m_groups) {
         for (int j = group.first; j < group.last;) {
-            const int pixel = s.pixel[j];
+            const int pixel = s.pixel[j], first = j;
             glm::vec2 sum(0.0f);
             glm::vec3 color_x(0.0f), color_y(0.0f);
             float moved[5] = {};
-            int recalled = 0;
             do {
                 const glm::vec2 own = frame.pattern[std::size_t(s.number[j])] - 0.5f;
                 const glm::vec2 p = group.recalled ? glm::vec2(s.x[j], s.y[j]) : own;
@@ -91,7 +90,6 @@ void TileRenderer::accumulate_places(const FrameContext& frame) {
                 moved[2] += p.x * p.x - own.x * own.x;
                 moved[3] += p.x * p.y - own.x * own.y;
                 moved[4] += p.y * p.y - own.y * own.y;
-                recalled += group.recalled ? 1 : 0;
                 ++j;
             } while (j < group.last && s.pixel[j] == pixel);
             m_sums.hit_x[pixel] += sum.x;
@@ -101,7 +99,7 @@ void TileRenderer::accumulate_places(const FrameContext& frame) {
                 m_sums.color_y[c][pixel] += color_y[c];
             }
             for (int m = 0; m < 5; ++m) m_sums.moved[m][pixel] += moved[m];
-            m_sums.recalled[pixel] += recalled;
+            m_sums.recalled[pixel] += group.recalled ? j - first : 0;
         }
     }
 }

@@ -111,10 +111,15 @@ void TileRenderer::trace_own_rays(const FrameContext& frame) {
                           m_hits.t[r]};
             point.own = int(m_own_hits.size());
             m_own_hits.push_back(hit);
-            if (point.record == nullptr) continue;
+            if (point.record == nullptr) {
+                ++statistics.reuse.misses;
+                continue;
+            }
             const glm::vec3 P = at(m_rays.origin, r) + hit.t * at(m_rays.direction, r);
             point.seen = lies_on(frame, point, hit, P);
-            if (!point.seen && !point.was_hidden) cache.set_hidden(point.id, true);
+            if (point.seen) continue;
+            ++statistics.reuse.beside;
+            if (!point.was_hidden) cache.set_hidden(point.id, true);
         }
         count = 0;
     };
@@ -122,10 +127,7 @@ void TileRenderer::trace_own_rays(const FrameContext& frame) {
         for (int sample = 0; sample < int(frame.pattern.size()); ++sample) {
             Listed& point = listed(frame, i, sample);
             if (point.record != nullptr && !point.at_outline) continue;
-            const glm::vec2 at =
-                glm::vec2(m_pixels[std::size_t(i)]) + frame.pattern[std::size_t(sample)];
-            m_x[count] = at.x;
-            m_y[count] = at.y;
+            place_ray(frame, count, i, sample);
             waiting[count++] = &point;
             if (count == capacity) trace_some();
         }
@@ -225,11 +227,6 @@ void TileRenderer::spread_doubt(const bool* hides) {
 void TileRenderer::recall(const FrameContext& frame) {
     const Stopwatch time;
     std::fill_n(m_needs_ray, m_batch.size, 1);
-    for (int lane = 0; lane < m_batch.size; ++lane) {
-        const Listed& one = listed(frame, m_batch.pixel[lane], m_batch.sample[lane]);
-        statistics.reuse.misses += one.record == nullptr ? 1 : 0;
-        statistics.reuse.beside += one.record != nullptr && one.at_outline && !one.seen ? 1 : 0;
-    }
     list_candidates(frame);
     aim_at_candidates(frame);
     const double listing = time.seconds();
