@@ -40,7 +40,7 @@ struct Carpet {
         return std::tuple{Channel{"color", &Baked::color, "diffuse reflectance, linear Rec. 709"}};
     }
 
-    float octave_frequency() const noexcept { return scuff; }
+    int octaves(float filter_width) const noexcept { return octaves_for(filter_width * scuff); }
     ESTARA_KERNEL float octave(const SurfacePoint& x, int k) const noexcept {
         return turbulence_term<Phi::deviation>(x.P * scuff, x.filter_width * scuff, k);
     }

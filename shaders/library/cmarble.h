@@ -43,7 +43,7 @@ struct Cmarble {
         return std::tuple{Channel{"color", &Baked::color, "diffuse reflectance, linear Rec. 709"}};
     }
 
-    float octave_frequency() const noexcept { return veining; }
+    int octaves(float filter_width) const noexcept { return octaves_for(filter_width * veining); }
     ESTARA_KERNEL float octave(const SurfacePoint& x, int k) const noexcept {
         return turbulence_term<Phi::deviation>(x.P * veining, x.filter_width * veining, k);
     }

@@ -52,7 +52,7 @@ struct Colormarble {
         return std::tuple{Channel{"color", &Baked::color, "diffuse reflectance, linear Rec. 709"}};
     }
 
-    float octave_frequency() const noexcept { return txtscale; }
+    int octaves(float filter_width) const noexcept { return octaves_for(filter_width * txtscale); }
     ESTARA_KERNEL float octave(const SurfacePoint& x, int k) const noexcept {
         return turbulence_term<Phi::noise>(x.P * txtscale, x.filter_width * txtscale, k);
     }

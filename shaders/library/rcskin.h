@@ -87,7 +87,7 @@ struct RCSkin {
     bool layered() const noexcept { return true; }
 
     /// Octaves of frequency 1, 2, 4 ... below maxfreq.
-    int octaves() const noexcept {
+    int octaves(float /*filter_width*/) const noexcept {
         int count = 0;
         while (float(1 << count) < maxfreq) ++count;
         return count;

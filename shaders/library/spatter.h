@@ -49,7 +49,7 @@ struct Spatter {
         return std::tuple{Channel{"color", &Baked::color, "diffuse reflectance, linear Rec. 709"}};
     }
 
-    int octaves() const noexcept { return sizes; }
+    int octaves(float /*filter_width*/) const noexcept { return sizes; }
 
     /// 1 in a speck of size k.
     ESTARA_KERNEL float octave(const SurfacePoint& x, int k) const noexcept {

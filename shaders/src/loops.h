@@ -47,10 +47,10 @@ ESTARA_KERNEL SurfacePoint point_of(const SurfaceBatch& in, int i, float filter_
 /// How many terms the shader's sums have.
 template <class S>
 int octaves_of(const S& shader, float filter_width) noexcept {
-    if constexpr (requires { shader.octaves(); }) {
-        return shader.octaves();
+    if constexpr (HasOctaveCount<S>) {
+        return shader.octaves(filter_width);
     } else {
-        return octaves_for(filter_width * octave_frequency_of(shader));
+        return octaves_for(filter_width);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -17,16 +18,14 @@ namespace estara {
 namespace detail {
 
 /// Whole and fractional part of a coordinate. Beyond +-2^24, where floats have no fraction left,
-/// the whole part stays put so that it fits an int; NaN gives a NaN fraction.
+/// the whole part is 0 so that it fits an int; NaN gives a NaN fraction.
 struct Lattice {
     int cell;
     float offset;
 };
 ESTARA_KERNEL Lattice lattice(float x) noexcept {
     const float whole = std::floor(x);
-    const float limit = 16777216.0f;
-    const float kept = whole >= -limit ? (whole > limit ? limit : whole) : -limit;
-    return {int(kept), x - whole};
+    return {int(std::fabs(whole) <= 0x1p24f ? whole : 0.0f), x - whole};
 }
 
 /// 32-bit finaliser; constants of Wellons 2018, "Prospecting for Hash Functions" (lowbias32).
@@ -36,15 +35,31 @@ ESTARA_KERNEL std::uint32_t scramble(std::uint32_t h) noexcept {
     return h ^ (h >> 16);
 }
 
-/// A cell's random bits; `seed` gives independent sets. The multipliers are odd and unrelated, so
-/// that the products of small coordinates do not cancel in the xor. The summands move the lattice
-/// off zero: a number and its negative differ in the bits above their lowest one, so that without
-/// them the signs of x and y would cancel in every third cell, hash(-x, -y, z) = hash(x, y, z).
-/// (Our choice of constants; the histogram, the correlations and the symmetries are tested.)
+/// What a coordinate brings to the hash of cells, and what the next one does. The multipliers are
+/// odd and unrelated, so that the products of small coordinates do not cancel in the xor. The
+/// summands move the lattice off zero: a number and its negative differ in the bits above their
+/// lowest one, so that without them the signs of x and y would cancel in every third cell,
+/// hash(-x, -y, z) = hash(x, y, z). (Our choice of constants; the histogram, the correlations and
+/// the symmetries are tested.)
+struct Bits {
+    std::uint32_t here, next;
+};
+ESTARA_KERNEL Bits axis_bits(int cell, std::uint32_t factor, std::uint32_t summand) noexcept {
+    const std::uint32_t here = std::uint32_t(cell) * factor + summand;
+    return {here, here + factor};
+}
+ESTARA_KERNEL Bits x_bits(int x) noexcept { return axis_bits(x, 0x8da6b343u, 0x6c8e9cf5u); }
+ESTARA_KERNEL Bits y_bits(int y) noexcept { return axis_bits(y, 0xd8163841u, 0x3ad8025fu); }
+/// `seed` gives independent sets of random bits.
+ESTARA_KERNEL Bits z_bits(int z, std::uint32_t seed) noexcept {
+    const Bits bits = axis_bits(z, 0xcb1ab31fu, 0x2545f491u);
+    const std::uint32_t set = seed * 0x9e3779b9u;
+    return {bits.here ^ set, bits.next ^ set};
+}
+
+/// A cell's random bits.
 ESTARA_KERNEL std::uint32_t hash(int x, int y, int z, std::uint32_t seed) noexcept {
-    return scramble((std::uint32_t(x) * 0x8da6b343u + 0x6c8e9cf5u) ^
-                    (std::uint32_t(y) * 0xd8163841u + 0x3ad8025fu) ^
-                    (std::uint32_t(z) * 0xcb1ab31fu + 0x2545f491u) ^ (seed * 0x9e3779b9u));
+    return scramble(x_bits(x).here ^ y_bits(y).here ^ z_bits(z, seed).here);
 }
 
 /// The upper 24 bits as a float in [0, 1).
@@ -56,20 +71,27 @@ ESTARA_KERNEL float fade(float t) noexcept { return t * t * t * (t * (t * 6.0f -
 ESTARA_KERNEL float lerp(float t, float a, float b) noexcept { return a + t * (b - a); }
 
 /// Flips the sign of x where bit 0 of h is set.
-ESTARA_KERNEL float signed_by(std::uint32_t h, float x) noexcept { return (h & 1u) ? -x : x; }
+ESTARA_KERNEL float signed_by(std::uint32_t h, float x) noexcept {
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^ (h << 31));
+}
 
-/// (x, y, z) . one of the twelve edge directions of a cube, four of them twice (Perlin 2002).
+/// Whether a bit of h is set; as a sign, for that is what blend instructions look at.
+ESTARA_KERNEL bool has_bit(std::uint32_t h, int bit) noexcept { return int(h << (31 - bit)) < 0; }
+
+/// (x, y, z) . one of the twelve edge directions of a cube, four of them twice (Perlin 2002): the
+/// first of two coordinates is x, or y where bit 3 is set; the second is y in the first quarter,
+/// x in two of the last four of 16, else z.
 ESTARA_KERNEL float gradient(std::uint32_t h, float x, float y, float z) noexcept {
-    const std::uint32_t c = h & 15u;
-    const float u = c < 8u ? x : y;
-    const float v = c < 4u ? y : ((c == 12u || c == 14u) ? x : z);
+    const float u = has_bit(h, 3) ? y : x;
+    const float z_or_x = (h & 13u) == 12u ? x : z;
+    const float v = (h & 12u) == 0u ? y : z_or_x;
     return signed_by(h, u) + signed_by(h >> 1, v);
 }
 
 /// (x, y) . one of eight directions (+-1, +-2), (+-2, +-1).
 ESTARA_KERNEL float gradient(std::uint32_t h, float x, float y) noexcept {
-    const bool low = (h & 4u) == 0u;
-    const float u = low ? x : y, v = low ? y : x;
+    const bool swapped = has_bit(h, 2);
+    const float u = swapped ? y : x, v = swapped ? x : y;
     return signed_by(h, u) + 2.0f * signed_by(h >> 1, v);
 }
 
@@ -87,8 +109,10 @@ ESTARA_KERNEL float gradient(std::uint32_t h, float x) noexcept {
 ESTARA_KERNEL float snoise(float x, std::uint32_t seed = 0) noexcept {
     using namespace detail;
     const Lattice a = lattice(x);
-    const float g0 = gradient(hash(a.cell, 0, 0, seed), a.offset);
-    const float g1 = gradient(hash(a.cell + 1, 0, 0, seed), a.offset - 1.0f);
+    const Bits X = x_bits(a.cell);
+    const std::uint32_t yz = y_bits(0).here ^ z_bits(0, seed).here;
+    const float g0 = gradient(scramble(X.here ^ yz), a.offset);
+    const float g1 = gradient(scramble(X.next ^ yz), a.offset - 1.0f);
     return 0.188f * lerp(fade(a.offset), g0, g1);
 }
 
@@ -96,10 +120,12 @@ ESTARA_KERNEL float snoise(const glm::vec2& p, std::uint32_t seed = 0) noexcept 
     using namespace detail;
     const Lattice a = lattice(p.x), b = lattice(p.y);
     const float x = a.offset, y = b.offset, u = fade(x);
-    const float g00 = gradient(hash(a.cell, b.cell, 0, seed), x, y);
-    const float g10 = gradient(hash(a.cell + 1, b.cell, 0, seed), x - 1.0f, y);
-    const float g01 = gradient(hash(a.cell, b.cell + 1, 0, seed), x, y - 1.0f);
-    const float g11 = gradient(hash(a.cell + 1, b.cell + 1, 0, seed), x - 1.0f, y - 1.0f);
+    const Bits X = x_bits(a.cell), Y = y_bits(b.cell);
+    const std::uint32_t Z = z_bits(0, seed).here;
+    const float g00 = gradient(scramble(X.here ^ Y.here ^ Z), x, y);
+    const float g10 = gradient(scramble(X.next ^ Y.here ^ Z), x - 1.0f, y);
+    const float g01 = gradient(scramble(X.here ^ Y.next ^ Z), x, y - 1.0f);
+    const float g11 = gradient(scramble(X.next ^ Y.next ^ Z), x - 1.0f, y - 1.0f);
     return 0.507f * lerp(fade(y), lerp(u, g00, g10), lerp(u, g01, g11));
 }
 
@@ -107,15 +133,15 @@ ESTARA_KERNEL float snoise(const glm::vec3& p, std::uint32_t seed = 0) noexcept 
     using namespace detail;
     const Lattice a = lattice(p.x), b = lattice(p.y), c = lattice(p.z);
     const float x = a.offset, y = b.offset, z = c.offset, u = fade(x), v = fade(y);
-    const int X = a.cell, Y = b.cell, Z = c.cell;
-    const float g000 = gradient(hash(X, Y, Z, seed), x, y, z);
-    const float g100 = gradient(hash(X + 1, Y, Z, seed), x - 1.0f, y, z);
-    const float g010 = gradient(hash(X, Y + 1, Z, seed), x, y - 1.0f, z);
-    const float g110 = gradient(hash(X + 1, Y + 1, Z, seed), x - 1.0f, y - 1.0f, z);
-    const float g001 = gradient(hash(X, Y, Z + 1, seed), x, y, z - 1.0f);
-    const float g101 = gradient(hash(X + 1, Y, Z + 1, seed), x - 1.0f, y, z - 1.0f);
-    const float g011 = gradient(hash(X, Y + 1, Z + 1, seed), x, y - 1.0f, z - 1.0f);
-    const float g111 = gradient(hash(X + 1, Y + 1, Z + 1, seed), x - 1.0f, y - 1.0f, z - 1.0f);
+    const Bits X = x_bits(a.cell), Y = y_bits(b.cell), Z = z_bits(c.cell, seed);
+    const float g000 = gradient(scramble(X.here ^ Y.here ^ Z.here), x, y, z);
+    const float g100 = gradient(scramble(X.next ^ Y.here ^ Z.here), x - 1.0f, y, z);
+    const float g010 = gradient(scramble(X.here ^ Y.next ^ Z.here), x, y - 1.0f, z);
+    const float g110 = gradient(scramble(X.next ^ Y.next ^ Z.here), x - 1.0f, y - 1.0f, z);
+    const float g001 = gradient(scramble(X.here ^ Y.here ^ Z.next), x, y, z - 1.0f);
+    const float g101 = gradient(scramble(X.next ^ Y.here ^ Z.next), x - 1.0f, y, z - 1.0f);
+    const float g011 = gradient(scramble(X.here ^ Y.next ^ Z.next), x, y - 1.0f, z - 1.0f);
+    const float g111 = gradient(scramble(X.next ^ Y.next ^ Z.next), x - 1.0f, y - 1.0f, z - 1.0f);
     const float near = lerp(v, lerp(u, g000, g100), lerp(u, g010, g110));
     const float far = lerp(v, lerp(u, g001, g101), lerp(u, g011, g111));
     return 0.936f * lerp(fade(z), near, far);
@@ -131,12 +157,10 @@ namespace detail {
 
 /// The vector whose product with (x, y, z) is gradient(h, x, y, z).
 ESTARA_KERNEL glm::vec3 gradient_vector(std::uint32_t h) noexcept {
-    const std::uint32_t c = h & 15u;
     const float u = signed_by(h, 1.0f), v = signed_by(h >> 1, 1.0f);
-    const bool v_is_x = c == 12u || c == 14u;
-    return {select(c < 8u, u, 0.0f) + select(v_is_x, v, 0.0f),
-            select(c < 8u, 0.0f, u) + select(c < 4u, v, 0.0f),
-            select(c < 4u, 0.0f, select(v_is_x, 0.0f, v))};
+    const bool u_is_y = has_bit(h, 3), v_is_x = (h & 13u) == 12u, v_is_y = (h & 12u) == 0u;
+    return {select(u_is_y, 0.0f, u) + select(v_is_x, v, 0.0f),
+            select(u_is_y, u, 0.0f) + select(v_is_y, v, 0.0f), select(v_is_y | v_is_x, 0.0f, v)};
 }
 
 /// What a corner of the lattice adds at an offset from it, and its gradient.
@@ -163,15 +187,16 @@ ESTARA_KERNEL NoiseSlope snoise_gradient(const glm::vec3& p, std::uint32_t seed 
     const Lattice a = lattice(p.x), b = lattice(p.y), c = lattice(p.z);
     const float x = a.offset, y = b.offset, z = c.offset;
     const float u = fade(x), v = fade(y), w = fade(z);
-    const int X = a.cell, Y = b.cell, Z = c.cell;
-    const NoiseSlope g000 = corner(hash(X, Y, Z, seed), x, y, z);
-    const NoiseSlope g100 = corner(hash(X + 1, Y, Z, seed), x - 1.0f, y, z);
-    const NoiseSlope g010 = corner(hash(X, Y + 1, Z, seed), x, y - 1.0f, z);
-    const NoiseSlope g110 = corner(hash(X + 1, Y + 1, Z, seed), x - 1.0f, y - 1.0f, z);
-    const NoiseSlope g001 = corner(hash(X, Y, Z + 1, seed), x, y, z - 1.0f);
-    const NoiseSlope g101 = corner(hash(X + 1, Y, Z + 1, seed), x - 1.0f, y, z - 1.0f);
-    const NoiseSlope g011 = corner(hash(X, Y + 1, Z + 1, seed), x, y - 1.0f, z - 1.0f);
-    const NoiseSlope g111 = corner(hash(X + 1, Y + 1, Z + 1, seed), x - 1.0f, y - 1.0f, z - 1.0f);
+    const Bits X = x_bits(a.cell), Y = y_bits(b.cell), Z = z_bits(c.cell, seed);
+    const NoiseSlope g000 = corner(scramble(X.here ^ Y.here ^ Z.here), x, y, z);
+    const NoiseSlope g100 = corner(scramble(X.next ^ Y.here ^ Z.here), x - 1.0f, y, z);
+    const NoiseSlope g010 = corner(scramble(X.here ^ Y.next ^ Z.here), x, y - 1.0f, z);
+    const NoiseSlope g110 = corner(scramble(X.next ^ Y.next ^ Z.here), x - 1.0f, y - 1.0f, z);
+    const NoiseSlope g001 = corner(scramble(X.here ^ Y.here ^ Z.next), x, y, z - 1.0f);
+    const NoiseSlope g101 = corner(scramble(X.next ^ Y.here ^ Z.next), x - 1.0f, y, z - 1.0f);
+    const NoiseSlope g011 = corner(scramble(X.here ^ Y.next ^ Z.next), x, y - 1.0f, z - 1.0f);
+    const NoiseSlope g111 =
+        corner(scramble(X.next ^ Y.next ^ Z.next), x - 1.0f, y - 1.0f, z - 1.0f);
 
     const float near0 = lerp(u, g000.value, g100.value), near1 = lerp(u, g010.value, g110.value);
     const float far0 = lerp(u, g001.value, g101.value), far1 = lerp(u, g011.value, g111.value);

@@ -12,9 +12,8 @@
 //                                                   error; default: if domain() is surface
 //     float   octave(const SurfacePoint&, int k) const noexcept;  term k of SurfacePoint's
 //                                                   octave_sum; an OctaveTerm is five of them
-//     float   octave_frequency() const noexcept;    lattice cells per length in term 0, which with
-//                                                   the filter width give their number; default: 1
-//     int     octaves() const noexcept;             their number, where parameters decide it
+//     int     octaves(float filter_width) const noexcept;  their number; default:
+//                                                   octaves_for(filter_width) (noise.h)
 //     S       resolved(bool has_uv) const noexcept; settles parameters that depend on the mesh
 //     bool    layered() const noexcept;             see BoundShader::layered(); default: false
 //     bool    glossy() const noexcept;              see BoundShader::glossy(); default: true
@@ -70,6 +69,13 @@ template <class S>
 concept HasOctaves = HasFiveSums<S> || requires(const S& shader, const SurfacePoint& x) {
     { shader.octave(x, 0) }
     noexcept->std::same_as<float>;
+};
+
+/// Whether S says how many terms its sums have; is_shader() refuses an octaves() of another form.
+template <class S>
+concept HasOctaveCount = requires(const S& shader) {
+    { shader.octaves(1.0f) }
+    noexcept->std::same_as<int>;
 };
 
 /// Whether S says where the highlight of a light ends.
@@ -144,6 +150,9 @@ consteval bool is_shader() {
         HasOctaves<S> || !requires { &S::octave; },
         "octave() takes a SurfacePoint and an int and returns a float or an OctaveTerm; it is "
         "const and noexcept");
+    static_assert(
+        HasOctaveCount<S> || !requires { &S::octaves; },
+        "octaves() takes the filter width and returns an int; it is const and noexcept");
     return true;
 }
 
@@ -189,15 +198,6 @@ bool perturbs_normal(const S& shader) noexcept {
         return shader.perturbs_normal();
     } else {
         return true;
-    }
-}
-
-template <class S>
-float octave_frequency_of(const S& shader) noexcept {
-    if constexpr (requires { shader.octave_frequency(); }) {
-        return shader.octave_frequency();
-    } else {
-        return 1.0f;
     }
 }
 

@@ -21,9 +21,9 @@ struct SurfacePoint {
     float filter_width;
 
     /// Sum of the shader's octave(x, k) over the octaves that filter_width leaves room for, or of
-    /// as many as its octaves() says; 0 for a shader without octave(). Summed up before bake(),
-    /// because a loop of varying length inside it would keep the loop over points from being made
-    /// wide.
+    /// as many as its octaves(filter_width) says; 0 for a shader without octave(). Summed up before
+    /// bake(), because a loop of varying length inside it would keep the loop over points from
+    /// being made wide.
     float octave_sum;
     glm::vec4 octave_more{0.0f};  ///< likewise, of OctaveTerm::more
 };
