@@ -76,6 +76,9 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int 
     double* const __restrict distances = nearest.distance2.data() + row;
     double* const __restrict heights = nearest.height.data() + row;
     double* const __restrict triangles = nearest.triangle.data() + row;
+    // Written after the loop: in it, g++ would leave out the stores of what stays the same, by
+    // masked ones, which are slow.
+    std::array<std::array<double, 8>, 3> kept;
     for (std::size_t i = 0; i < 8; ++i) {
         const double z = lanes[i];
         const double height = number(TrianglePlanes::height, z);
@@ -93,9 +96,14 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int 
         const bool tied = distance2 <= distances[i] + tie;
         const bool faces_more = std::abs(facing) > std::abs(heights[i]);
         const bool take = (closer | (tied & faces_more)) & (z >= first) & (z <= last);
-        distances[i] = take ? distance2 : distances[i];
-        heights[i] = take ? facing : heights[i];
-        triangles[i] = take ? triangle : triangles[i];
+        kept[0][i] = take ? distance2 : distances[i];
+        kept[1][i] = take ? facing : heights[i];
+        kept[2][i] = take ? triangle : triangles[i];
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+        distances[i] = kept[0][i];
+        heights[i] = kept[1][i];
+        triangles[i] = kept[2][i];
     }
 }
 
