@@ -76,11 +76,17 @@ std::vector<Setting> settings() {
     return all;
 }
 
+/// Rays from around a scene towards its middle: 64 any way, then 64 side by side as those of a
+/// camera or to a light are, which Embree is given as a stream; and so on.
 std::vector<Ray> random_rays(const Setting& setting, int count) {
     Random random;
     std::vector<Ray> rays;
+    glm::dvec3 side;  // where a bundle comes from
     for (int i = 0; i < count; ++i) {
-        const glm::dvec3 from = setting.centre + setting.size * random.direction();
+        const bool bundled = i / 64 % 2 != 0;
+        if (i % 64 == 0) side = random.direction();
+        const glm::dvec3 from =
+            setting.centre + setting.size * (bundled ? side : random.direction());
         const glm::dvec3 to =
             setting.centre + 0.6 * setting.size * random.unit() * random.direction();
         const double length = random.between(0.1, 10.0);
@@ -224,6 +230,36 @@ TEST(RayScene, LetsRaysWithoutMeaningHitNothing) {
         const bool should_hit = i == 0 || i == 8;
         EXPECT_EQ(hits[i].instance, should_hit ? 0 : Hit::none) << i;
         EXPECT_EQ(blocked[i], should_hit) << i;
+    }
+}
+
+TEST(RayScene, TracesABundleAsItsRaysOneByOne) {
+    const Setting setting = settings()[1];
+    const RayScene rays(setting.scene);
+    // Parallel to axes, where reciprocals are infinite, and at their borders; then every fifth ray
+    // is empty.
+    for (const glm::vec3 along :
+         {glm::vec3(0, 0, -1), glm::vec3(0.0f, -0.0f, -1), glm::vec3(-1, 0, 0),
+          glm::vec3(1e-20f, -1e-20f, -1), glm::vec3(0.3f, -0.2f, -1)}) {
+        std::vector<Ray> bundle;
+        for (int i = 0; i < 512; ++i) {
+            const glm::vec3 beside(0.1f * float(i % 32) - 1.6f, 0.2f * float(i / 32) - 1.6f,
+                                   0.1f * float(i % 32) - 1.6f);
+            bundle.push_back({beside - 5.0f * along, along, 0.0f, i % 5 == 4 ? -1.0f : inf});
+        }
+        const std::vector<Hit> together = traced(rays, bundle);
+        std::vector<std::uint8_t> blocked(bundle.size(), 7);
+        rays.occluded(bundle, blocked.data());
+        int hit_count = 0;
+        for (std::size_t i = 0; i < bundle.size(); ++i) {
+            const Hit alone = traced(rays, {bundle[i]})[0];
+            ASSERT_EQ(together[i].instance, alone.instance) << i;
+            ASSERT_EQ(blocked[i], alone.instance != Hit::none) << i;
+            if (alone.instance == Hit::none) continue;
+            ASSERT_FLOAT_EQ(together[i].t, alone.t) << i;
+            ++hit_count;
+        }
+        EXPECT_GT(hit_count, 50);
     }
 }
 
