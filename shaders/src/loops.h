@@ -2,6 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
 
 #include "bound.h"
 #include "estara/shaders/noise.h"
@@ -152,7 +155,8 @@ ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatc
 
 /// The points of a batch at which a light shows a highlight, side by side.
 struct Highlights {
-    int near[SeenBatch::capacity];
+    /// By point: 1 where there is one. Eight are read at once.
+    alignas(64) std::uint8_t near[SeenBatch::capacity];
     int point[SeenBatch::capacity];
     SeenBatch seen;
     float Ci[3][SeenBatch::capacity];
@@ -161,7 +165,7 @@ struct Highlights {
 /// near[i] = 1 where N.H is at least `cosine` and the light is not 0. H is not normalised:
 /// N.(L + V) >= cosine |L + V|.
 ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int last,
-                             int* __restrict near) noexcept {
+                             std::uint8_t* __restrict near) noexcept {
     const float square = cosine * cosine;
 #pragma GCC ivdep
     for (int i = first; i < last; ++i) {
@@ -170,6 +174,23 @@ ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int
         const bool lit = (seen.Cl[0][i] > 0.0f) | (seen.Cl[1][i] > 0.0f) | (seen.Cl[2][i] > 0.0f);
         near[i] = lit & (d > 0.0f) & (d * d >= square * glm::dot(h, h)) ? 1 : 0;
     }
+}
+
+/// Lists the points in [first, last) that are near. Most are not, mostly.
+/// @return  how many
+inline int list_near(int first, int last, Highlights& found) noexcept {
+    constexpr int word = int(sizeof(std::uint64_t));
+    int count = 0;
+    for (int i = first / word * word; i < last; i += word) {
+        std::uint64_t near;
+        std::memcpy(&near, found.near + i, sizeof near);
+        for (; near != 0; near &= near - 1) {
+            const int point = i + std::countr_zero(near) / 8;
+            found.point[count] = point;
+            count += int(point >= first && point < last);
+        }
+    }
+    return count;
 }
 
 /// What a light alone makes, where that is a highlight and nothing else: evaluated where there is
@@ -183,11 +204,7 @@ void view_highlights(const S& shader, float cosine, const float* planes, const S
     thread_local float picked[floats * stride];
     Highlights* const to = &found;
     wide([=, &seen]() ESTARA_LOOP { near_loop(cosine, seen, first, last, to->near); }, limit);
-    int count = 0;
-    for (int i = first; i < last; ++i) {
-        to->point[count] = i;
-        count += to->near[i];
-    }
+    const int count = list_near(first, last, *to);
     for (int c = 0; c < 3; ++c) std::fill(Ci + c * stride + first, Ci + c * stride + last, 0.0f);
     if (count == 0) return;
     const auto pick = [&](const float* from, float* plane) {

@@ -214,16 +214,19 @@ struct FixedPoints::Impl {
 
     void recall(const Points& points, std::size_t first, Work& w) const {
         const auto in_page = std::size_t(cache->page(0).capacity);
-        for (int i = 0; i < points.surface.size; ++i) {
-            const std::size_t at = first + std::size_t(i);
-            const float* const row =
-                cache->page(std::uint32_t(at / in_page)).record(int(at % in_page));
-            for (int c = 0; c < 3; ++c) {
-                w.N[c][i] = row[RecordLayout::N + c];
-                w.seen.E[c][i] = row[layout.E() + c];
-            }
-            for (int k = 0; k < layout.baked; ++k) {
-                w.planes[std::size_t(k * capacity + i)] = row[RecordLayout::first_baked + k];
+        const auto stride = std::size_t(layout.floats());
+        for (int i = 0; i < points.surface.size;) {
+            const std::size_t at = first + std::size_t(i), index = at % in_page;
+            const float* row = cache->page(std::uint32_t(at / in_page)).record(int(index));
+            const int end = std::min(points.surface.size, i + int(in_page - index));
+            for (; i < end; ++i, row += stride) {
+                for (int c = 0; c < 3; ++c) {
+                    w.N[c][i] = row[RecordLayout::N + c];
+                    w.seen.E[c][i] = row[layout.E() + c];
+                }
+                for (int k = 0; k < layout.baked; ++k) {
+                    w.planes[std::size_t(k * capacity + i)] = row[RecordLayout::first_baked + k];
+                }
             }
         }
     }

@@ -42,7 +42,7 @@ ESTARA_KERNEL float cone_share(const PosedLight& light, float cosine) noexcept {
 
 /// KHR_lights_punctual, "Range Property". A range of 0 has no limit.
 ESTARA_KERNEL float range_window(float distance, float range) noexcept {
-    const float q = distance / (range > 0.0f ? range : 1.0f);
+    const float q = distance * (1.0f / (range > 0.0f ? range : 1.0f));
     return range > 0.0f ? clamp(1.0f - q * q * q * q, 0.0f, 1.0f) : 1.0f;
 }
 
@@ -57,11 +57,11 @@ ESTARA_KERNEL LightSample sample_light(const PosedLight& light, const glm::vec3&
     // At the light itself there is no direction; beyond the float's range there is no light.
     const bool near = (distance2 > std::numeric_limits<float>::min()) & (distance2 < infinity);
     const float square = near ? distance2 : 1.0f;
-    const float distance = std::sqrt(square);
-    const glm::vec3 L = to_light / distance;
+    const float distance = std::sqrt(square), inverse = 1.0f / distance;
+    const glm::vec3 L = to_light * inverse;
     const float cone =
         light.type == LightType::spot ? cone_share(light, -glm::dot(L, light.direction)) : 1.0f;
-    const float share = range_window(distance, light.range) * cone / (pi * square);
+    const float share = range_window(distance, light.range) * cone * (inverse * inverse / pi);
     const float reaching = directional ? 1.0f / pi : (near ? share : 0.0f);
     LightSample sample;
     sample.L.x = directional ? -light.direction.x : (near ? L.x : 0.0f);
