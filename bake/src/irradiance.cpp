@@ -23,7 +23,7 @@ namespace {
 constexpr double most_masked = 0.05;  // share of the surface; more: smaller voxels
 constexpr const char* masked_param = "masked";
 constexpr int floats = 4;  // irradiance and mask
-constexpr std::size_t batch = RayBatch::capacity;
+constexpr std::size_t batch = SurfaceSampler::batch_size;
 
 /// Bytes of a bake's memory for each voxel of its finest level: planes and levels, distance-free,
 /// and the lookup structure beside them.

@@ -16,7 +16,8 @@ namespace estara {
 
 namespace {
 
-constexpr std::size_t batch_size = SurfaceBatch::capacity;
+constexpr std::size_t batch_size = SurfaceSampler::batch_size, stride = SurfaceBatch::capacity;
+static_assert(batch_size <= stride);
 
 /// Points and what the shader gives there.
 struct Reference {
@@ -35,7 +36,7 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
         thread_local SurfaceBatch batch;
         thread_local std::vector<MeshPoint> points;
         thread_local std::vector<float> planes;
-        planes.resize(floats * batch_size);
+        planes.resize(floats * stride);
         const std::size_t first = b * batch_size;
         sampler.points(seed, b, std::min(batch_size, samples - first), points);
         batch.size = int(points.size());
@@ -47,7 +48,7 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
         }
         shader.bake(batch, planes.data());
         for (std::size_t k = 0; k < floats; ++k) {
-            std::copy_n(planes.begin() + std::ptrdiff_t(k * batch_size), batch.size,
+            std::copy_n(planes.begin() + std::ptrdiff_t(k * stride), batch.size,
                         reference.values[k].begin() + std::ptrdiff_t(first));
         }
     });

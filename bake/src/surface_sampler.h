@@ -25,6 +25,10 @@ public:
         }
     }
 
+    /// Points of a batch, but for the last. A number of its own: with another the points, and every
+    /// error that is measured at them, would be others.
+    static constexpr std::size_t batch_size = 512;
+
     /// Points of one batch of many. Each batch has a generator of its own, so that its points do
     /// not depend on who works on which.
     void points(std::uint64_t seed, std::uint64_t batch, std::size_t count,

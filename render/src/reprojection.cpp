@@ -16,7 +16,7 @@ namespace estara {
 struct Reprojection::Fallen {
     static constexpr int index = 0, page = RayId::index_bits, hidden = page + ReuseCache::page_bits,
                          stratum = hidden + 1, pixel = stratum + 16;
-    static_assert(pixel + 9 == 64 && batch_capacity == 1 << 9);
+    static_assert(pixel + 9 == 64 && TileGrid::pixels == 1 << 9);
 
     static std::uint32_t page_of(std::uint64_t bits) noexcept {
         return std::uint32_t(bits >> page) & ((1u << ReuseCache::page_bits) - 1);
@@ -46,7 +46,7 @@ Reprojection::Reprojection(const FrameSettings& settings)
       m_height(settings.height),
       m_tiles(settings.width, settings.height),
       m_strata(settings.spp, settings.seed),
-      m_slot_count(std::size_t(m_tiles.count()) * batch_capacity * 2 * std::size_t(settings.spp)),
+      m_slot_count(std::size_t(m_tiles.count()) * TileGrid::pixels * 2 * std::size_t(settings.spp)),
       m_slots(new std::uint64_t[m_slot_count]) {}
 
 void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
@@ -154,7 +154,7 @@ void Reprojection::project(const PinholePose& pose, const PosedInstance& instanc
 
 /// Sorts a tile's points by pixel and fills its slots.
 void Reprojection::serve_tile(int tile, Sorting& sorting) {
-    std::array<std::uint32_t, batch_capacity + 1> first{};
+    std::array<std::uint32_t, TileGrid::pixels + 1> first{};
     const auto each = [&](auto&& f) {
         for (const Bins& bins : m_bins) {
             if (bins.empty()) continue;  // a thread that has had no page yet
@@ -164,18 +164,18 @@ void Reprojection::serve_tile(int tile, Sorting& sorting) {
     each([&](std::uint64_t fallen) { ++first[(fallen >> Fallen::pixel) + 1]; });
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     sorting.fallen.resize(first.back());
-    std::array<std::uint32_t, batch_capacity> next;
+    std::array<std::uint32_t, TileGrid::pixels> next;
     std::copy_n(first.begin(), next.size(), next.begin());
     each([&](std::uint64_t fallen) { sorting.fallen[next[fallen >> Fallen::pixel]++] = fallen; });
 
     const std::size_t slots = 2 * std::size_t(m_strata.count());
-    std::fill_n(slots_of(tile, 0), slots * batch_capacity, none);
-    for (std::size_t i = 0; i < batch_capacity; ++i) {
+    std::fill_n(slots_of(tile, 0), slots * TileGrid::pixels, none);
+    for (std::size_t i = 0; i < TileGrid::pixels; ++i) {
         if (first[i] == first[i + 1]) continue;
         serve_pixel({sorting.fallen.data() + first[i], first[i + 1] - first[i]},
                     slots_of(tile, int(i)), sorting.left_over);
     }
-    count_serving({slots_of(tile, 0), slots * batch_capacity});
+    count_serving({slots_of(tile, 0), slots * TileGrid::pixels});
 }
 
 /// @param slots  by rectangle, then the seconds; all of them none

@@ -101,7 +101,7 @@ private:
         return id;
     }
     std::uint64_t* slots_of(int tile, int pixel) const noexcept {
-        return m_slots.get() + (std::size_t(tile) * batch_capacity + std::size_t(pixel)) * 2 *
+        return m_slots.get() + (std::size_t(tile) * TileGrid::pixels + std::size_t(pixel)) * 2 *
                                    std::size_t(m_strata.count());
     }
 

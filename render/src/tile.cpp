@@ -78,16 +78,16 @@ void TileRenderer::shade(const FrameContext& frame, NewRecords& found) {
 }
 
 void TileRenderer::list_pixels(const FrameContext& frame, const glm::ivec2& corner) {
-    m_pixels.resize(capacity);
-    m_numbers.resize(capacity);
-    for (int i = 0; i < capacity; ++i) {
+    m_pixels.resize(TileGrid::pixels);
+    m_numbers.resize(TileGrid::pixels);
+    for (int i = 0; i < TileGrid::pixels; ++i) {
         m_pixels[std::size_t(i)] = corner + TileGrid::place(i);
         m_numbers[std::size_t(i)] = i;
     }
     const glm::ivec2 size(frame.settings.width, frame.settings.height);
     if (corner.x + TileGrid::width <= size.x && corner.y + TileGrid::height <= size.y) return;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < capacity; ++i) {
+    for (std::size_t i = 0; i < TileGrid::pixels; ++i) {
         const glm::ivec2 pixel = m_pixels[i];
         if (pixel.x >= size.x || pixel.y >= size.y) continue;
         m_pixels[count] = pixel;

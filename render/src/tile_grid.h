@@ -11,7 +11,8 @@ namespace estara {
 /// A sample in each pixel of a tile fills one batch of a shader.
 struct TileGrid {
     static constexpr int width = 32, height = 16;  ///< of a tile, pixels
-    static_assert(width * height == batch_capacity);
+    static constexpr int pixels = width * height;
+    static_assert(pixels <= batch_capacity);
 
     int columns, rows;  ///< tiles across and down
 

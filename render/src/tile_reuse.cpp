@@ -26,7 +26,7 @@ void TileRenderer::list_points(const FrameContext& frame, int tile, const glm::i
     const glm::ivec2 size =
         glm::min(glm::ivec2(TileGrid::width, TileGrid::height),
                  glm::ivec2(frame.settings.width, frame.settings.height) - corner);
-    m_listed.resize(std::size_t(capacity * strata.count()));
+    m_listed.resize(std::size_t(TileGrid::pixels * strata.count()));
     // A row has a cell for each rectangle of its pixels.
     const int across = size.x * strata.columns(), down = size.y * strata.rows();
     thread_local std::vector<Listed*> row, before;

@@ -327,7 +327,8 @@ TEST_P(EveryShader, ViewHasTheSameBitsOnEveryInstructionSetAndInEveryPart) {
                                            InstructionSet::avx2, InstructionSet::avx512}) {
             const BoundShaderPtr shader = bind_shader(info().name, {}, true, limit).shader;
             std::vector<float> Ci(3 * capacity, test::untouched);
-            for (const auto& [first, last] : {std::pair{0, 1}, {1, 38}, {38, 500}, {500, 512}}) {
+            for (const auto& [first, last] :
+                 {std::pair{0, 1}, {1, 38}, {38, 500}, {500, capacity}}) {
                 shader->view(planes.data(), *seen, first, last, lit, Ci.data());
             }
             EXPECT_TRUE(test::same_bits(Ci, expected)) << int(limit);
@@ -431,8 +432,10 @@ std::string baked_digest(const BoundShader& shader) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const SurfaceBatch& batch :
          {test::random_batch(17, 1.0f, 0.01f), test::random_batch(18, 100.0f, 0.2f)}) {
-        for (const float value : test::bake(shader, batch)) {
-            const auto bits = std::bit_cast<std::uint32_t>(value);
+        const std::vector<float> planes = test::bake(shader, batch);
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            if (i % capacity >= 512) continue;
+            const auto bits = std::bit_cast<std::uint32_t>(planes[i]);
             for (int byte = 0; byte < 4; ++byte) {
                 hash = (hash ^ ((bits >> (8 * byte)) & 255u)) * 0x100000001b3u;
             }

@@ -1,4 +1,4 @@
-// Points in structure-of-arrays form, one OpenVDB leaf's worth at most.
+// Points in structure-of-arrays form.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,7 +7,7 @@
 
 namespace estara {
 
-/// Up to 512 = 8^3 points that share one filter width. Row stride is `capacity`, whatever `size`.
+/// Up to `capacity` points that share one filter width. Row stride is `capacity`, whatever `size`.
 struct alignas(64) SurfaceBatch {
     static constexpr int capacity = batch_capacity;
 

@@ -21,8 +21,10 @@ private:
     glm::vec3 m_v;
 };
 
-/// Points in a batch, at most.
-inline constexpr int batch_capacity = 512;
+/// Points in a batch, at most, and floats from a plane of them to the next. Two lines of a cache
+/// more than 512: planes that lie a power of two apart would all fall into two of a cache's sets,
+/// and a loop over twenty of them would find none of them there a second time.
+inline constexpr int batch_capacity = 544;
 
 /// A ViewDirection for each point of a batch, which only a Camera can make either.
 class ViewDirections {
