@@ -7,8 +7,6 @@
 namespace estara {
 namespace {
 
-ESTARA_KERNEL bool is_finite(float v) noexcept { return v - v == 0.0f; }
-
 /// First float of the channel "color" in a baked record, or -1.
 int color_offset(const ShaderInfo& info) noexcept {
     int offset = 0;

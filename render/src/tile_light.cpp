@@ -100,14 +100,11 @@ void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
           offset = frame.instances[group.instance].offset]() ESTARA_LOOP {
 #pragma GCC ivdep
         for (int j = group.first; j < group.last; ++j) {
-            const LightSample sample = sample_light(light, at(samples->P, j));
-            const float cosine = glm::dot(at(samples->seen.N, j), sample.L);
-            const bool faces = cosine > 0.0f;
-            put(samples->seen.L, j, sample.L);
-            put(samples->seen.Cl, j,
-                {faces ? sample.Cl.x : 0.0f, faces ? sample.Cl.y : 0.0f,
-                 faces ? sample.Cl.z : 0.0f});
-            reach->cosine[j] = faces ? cosine : 0.0f;
+            const FallingLight falling =
+                falling_light(light, at(samples->P, j), at(samples->seen.N, j));
+            put(samples->seen.L, j, falling.L);
+            put(samples->seen.Cl, j, falling.Cl);
+            reach->cosine[j] = falling.cosine;
         }
         if (!shadow) return;
 #pragma GCC ivdep

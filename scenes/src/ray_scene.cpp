@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "estara/scenes/error.h"
+#include "estara/shaders/math.h"
 #include "estara/shaders/wide.h"
 
 namespace estara {
@@ -86,8 +87,6 @@ struct alignas(64) Prepared {
     int octant[batch_capacity];   ///< a bit for each negative component of its direction
     float scale[batch_capacity];  ///< of the direction: Embree's t times this is the ray's own
 };
-
-constexpr bool is_finite(float v) noexcept { return v - v == 0.0f; }
 
 /// A power of two that brings a direction into the range that Embree's reciprocals bear.
 float direction_scale(float size) noexcept {

@@ -102,12 +102,11 @@ void StaticLight::add(const PosedLight& light, std::span<const MeshPoint> points
         const glm::vec3 P(m_world_from_object * glm::vec4(point.P, 1.0f));
         const glm::vec3 Ng = unit_or(m_world_from_normal * point.Ng, glm::vec3(0.0f, 0.0f, 1.0f));
         const glm::vec3 N = unit_or(m_world_from_normal * point.N, Ng);
-        const LightSample sample = sample_light(light, P);
-        const float cosine = glm::dot(N, sample.L);
-        if (!(cosine > 0.0f) || sample.Cl == glm::vec3(0.0f)) continue;
-        reached.push_back({i, sample.Cl * cosine});
-        const glm::vec3 side = glm::dot(Ng, sample.L) < 0.0f ? -Ng : Ng;
-        rays.push(shadow_ray(light, m_offset.from(P, side, point.P), sample.L));
+        const FallingLight falling = falling_light(light, P, N);
+        if (falling.Cl == glm::vec3(0.0f)) continue;
+        reached.push_back({i, falling.Cl * falling.cosine});
+        const glm::vec3 side = glm::dot(Ng, falling.L) < 0.0f ? -Ng : Ng;
+        rays.push(shadow_ray(light, m_offset.from(P, side, point.P), falling.L));
     }
     if (light.shadow) {
         m_rays.occluded(rays, blocked);

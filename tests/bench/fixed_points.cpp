@@ -148,16 +148,12 @@ struct FixedPoints::Impl {
             wide([light, size, sum_E, to = &w, P = points.P[0]]() ESTARA_LOOP {
 #pragma GCC ivdep
                 for (int i = 0; i < size; ++i) {
-                    const LightSample sample =
-                        sample_light(light, glm::vec3(P[i], P[capacity + i], P[2 * capacity + i]));
-                    const glm::vec3 N(to->seen.N[0][i], to->seen.N[1][i], to->seen.N[2][i]);
-                    const float cosine = glm::dot(N, sample.L);
-                    const bool faces = cosine > 0.0f;
-                    put(to->seen.L, i, sample.L);
-                    put(to->seen.Cl, i,
-                        {faces ? sample.Cl.x : 0.0f, faces ? sample.Cl.y : 0.0f,
-                         faces ? sample.Cl.z : 0.0f});
-                    to->cosine[i] = faces ? cosine : 0.0f;
+                    const FallingLight falling = falling_light(
+                        light, glm::vec3(P[i], P[capacity + i], P[2 * capacity + i]),
+                        glm::vec3(to->seen.N[0][i], to->seen.N[1][i], to->seen.N[2][i]));
+                    put(to->seen.L, i, falling.L);
+                    put(to->seen.Cl, i, falling.Cl);
+                    to->cosine[i] = falling.cosine;
                 }
                 if (!sum_E) return;
 #pragma GCC ivdep

@@ -72,4 +72,20 @@ ESTARA_KERNEL LightSample sample_light(const PosedLight& light, const glm::vec3&
     return sample;
 }
 
+/// A light as it falls on a side of a surface if nothing is in between.
+struct FallingLight {
+    glm::vec3 L;   ///< unit, to the light, world
+    glm::vec3 Cl;  ///< as LightSample has it; 0 from behind
+    float cosine;  ///< <N.L>+
+};
+
+/// @param N  unit, world
+ESTARA_KERNEL FallingLight falling_light(const PosedLight& light, const glm::vec3& P,
+                                         const glm::vec3& N) noexcept {
+    const LightSample sample = sample_light(light, P);
+    const float cosine = glm::dot(N, sample.L);
+    const bool faces = cosine > 0.0f;
+    return {sample.L, select(faces, sample.Cl, glm::vec3(0.0f)), faces ? cosine : 0.0f};
+}
+
 }  // namespace estara

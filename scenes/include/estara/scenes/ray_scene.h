@@ -85,8 +85,8 @@ public:
     /// can_be_hit().
     void set_pose(const Pose& pose);
 
-    /// Nearest hits; rays that start near each other and go the same way are fastest (packets of
-    /// 16). Any thread, any number at once. Rays with NaN hit nothing.
+    /// Nearest hits; rays that start near each other and go the same way are fastest (32
+    /// neighbours at a time). Any thread, any number at once. Rays with NaN hit nothing.
     void intersect(const RayBatch& rays, HitBatch& hits) const;
     /// The same, hits[i] for rays[i].
     void intersect(std::span<const Ray> rays, Hit* hits) const;

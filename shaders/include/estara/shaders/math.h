@@ -33,6 +33,9 @@ ESTARA_KERNEL float largest(const glm::vec3& v) noexcept {
     return xy > v.z ? xy : v.z;
 }
 
+/// Whether a number is neither infinite nor NaN. (std::isfinite is a call in some loops.)
+ESTARA_KERNEL bool is_finite(float v) noexcept { return v - v == 0.0f; }
+
 /// a if so, else b, without a branch.
 ESTARA_KERNEL float select(bool so, float a, float b) noexcept { return so ? a : b; }
 ESTARA_KERNEL glm::vec3 select(bool so, const glm::vec3& a, const glm::vec3& b) noexcept {
