@@ -12,6 +12,7 @@
 
 #include "blocks.h"
 #include "estara/scenes/error.h"
+#include "estara/shaders/wide.h"
 
 namespace estara {
 namespace {
@@ -250,13 +251,17 @@ void average(const GridLevel& fine, const Block& block, GridLevel& coarse) {
     for (std::size_t first = 0; first < fine.planes.size(); first += FineCube::planes) {
         const std::size_t end = std::min(first + FineCube::planes, fine.planes.size());
         near.gather(fine, block.origin, first);
-        std::uint64_t out = block.first;
-        for_each_bit(block.active, [&](int x, int y, int z) {
-            const auto sum = near.tent(x, y, z);
-            for (std::size_t c = first; c < end; ++c) {
-                coarse.planes[c][out] = float(sum[c - first] / sum[FineCube::planes]);
-            }
-            ++out;
+        std::array<float*, FineCube::planes> to{};
+        for (std::size_t c = first; c < end; ++c) to[c - first] = coarse.planes[c].data();
+        wide([&near, &block, to, count = end - first]() ESTARA_LOOP {
+            std::uint64_t out = block.first;
+            for_each_bit(block.active, [&](int x, int y, int z) {
+                const auto sum = near.tent(x, y, z);
+                for (std::size_t c = 0; c < count; ++c) {
+                    to[c][out] = float(sum[c] / sum[FineCube::planes]);
+                }
+                ++out;
+            });
         });
     }
 }
