@@ -85,7 +85,15 @@ ESTARA_KERNEL FallingLight falling_light(const PosedLight& light, const glm::vec
     const LightSample sample = sample_light(light, P);
     const float cosine = glm::dot(N, sample.L);
     const bool faces = cosine > 0.0f;
-    return {sample.L, select(faces, sample.Cl, glm::vec3(0.0f)), faces ? cosine : 0.0f};
+    FallingLight falling;  // by component: a vec3 that is copied whole keeps a loop scalar
+    falling.L.x = sample.L.x;
+    falling.L.y = sample.L.y;
+    falling.L.z = sample.L.z;
+    falling.Cl.x = faces ? sample.Cl.x : 0.0f;
+    falling.Cl.y = faces ? sample.Cl.y : 0.0f;
+    falling.Cl.z = faces ? sample.Cl.z : 0.0f;
+    falling.cosine = faces ? cosine : 0.0f;
+    return falling;
 }
 
 }  // namespace estara
