@@ -76,8 +76,7 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, double triangle, int 
     double* const __restrict distances = nearest.distance2.data() + row;
     double* const __restrict heights = nearest.height.data() + row;
     double* const __restrict triangles = nearest.triangle.data() + row;
-    // Written after the loop: in it, g++ would leave out the stores of what stays the same, by
-    // masked ones, which are slow.
+    // Written after the loop: inside it g++ makes masked stores of them, which are slow.
     std::array<std::array<double, 8>, 3> kept;
     for (std::size_t i = 0; i < 8; ++i) {
         const double z = lanes[i];

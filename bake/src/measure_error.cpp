@@ -16,8 +16,9 @@ namespace estara {
 
 namespace {
 
-constexpr std::size_t batch_size = SurfaceSampler::batch_size, stride = SurfaceBatch::capacity;
-static_assert(batch_size <= stride);
+constexpr std::size_t batch_size = SurfaceSampler::batch_size;
+constexpr std::size_t shader_stride = SurfaceBatch::capacity;  ///< of planes that bake() fills
+static_assert(batch_size <= shader_stride);
 
 /// Points and what the shader gives there.
 struct Reference {
@@ -36,7 +37,7 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
         thread_local SurfaceBatch batch;
         thread_local std::vector<MeshPoint> points;
         thread_local std::vector<float> planes;
-        planes.resize(floats * stride);
+        planes.resize(floats * shader_stride);
         const std::size_t first = b * batch_size;
         sampler.points(seed, b, std::min(batch_size, samples - first), points);
         batch.size = int(points.size());
@@ -48,7 +49,7 @@ Reference evaluate(const Mesh& mesh, const BoundShader& shader, double filter_wi
         }
         shader.bake(batch, planes.data());
         for (std::size_t k = 0; k < floats; ++k) {
-            std::copy_n(planes.begin() + std::ptrdiff_t(k * stride), batch.size,
+            std::copy_n(planes.begin() + std::ptrdiff_t(k * shader_stride), batch.size,
                         reference.values[k].begin() + std::ptrdiff_t(first));
         }
     });

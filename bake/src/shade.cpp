@@ -18,6 +18,7 @@ namespace {
 
 /// The widest loop over a batch takes so many points at once, and the rest one by one.
 constexpr int widest_step = 16;
+static_assert(SurfaceBatch::capacity % widest_step == 0);
 
 /// Blocks that are shaded one after another: some batches.
 constexpr std::size_t blocks_at_a_time = 16;

@@ -25,8 +25,9 @@ public:
         }
     }
 
-    /// Points of a batch, but for the last. A number of its own: with another the points, and every
-    /// error that is measured at them, would be others.
+    /// Points that callers ask for in each batch but the last, which may have fewer. Not the
+    /// capacity of a shader's batch: with another number the points, and every error that is
+    /// measured at them, would be others.
     static constexpr std::size_t batch_size = 512;
 
     /// Points of one batch of many. Each batch has a generator of its own, so that its points do

@@ -12,6 +12,7 @@
 
 #include "blocks.h"
 #include "estara/scenes/error.h"
+#include "estara/shaders/kernel.h"
 #include "estara/shaders/wide.h"
 
 namespace estara {
@@ -178,7 +179,7 @@ public:
     }
 
     /// The weighted sums of the records around coarse voxel (x, y, z): weights 1 2 1 in each axis.
-    std::array<double, planes + 1> tent(int x, int y, int z) const noexcept {
+    ESTARA_KERNEL std::array<double, planes + 1> tent(int x, int y, int z) const noexcept {
         std::array<double, planes + 1> sum{};
         for (int dx = 0; dx < 3; ++dx) {
             for (int dy = 0; dy < 3; ++dy) {
@@ -195,7 +196,7 @@ public:
 private:
     static constexpr int side = 17;
 
-    static std::size_t at(int x, int y, int z) noexcept {
+    ESTARA_KERNEL static std::size_t at(int x, int y, int z) noexcept {
         return std::size_t((x * side + y) * side + z);
     }
 

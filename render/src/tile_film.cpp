@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estara/shaders/math.h"
 #include "tile.h"
 
 namespace estara {

@@ -8,7 +8,7 @@
 namespace estara {
 
 /// Tiles of 32 x 16 pixels, row by row; those at the right and lower border reach beyond the image.
-/// A sample in each pixel of a tile fills one batch of a shader.
+/// A sample in each pixel of a tile fits into one batch of a shader.
 struct TileGrid {
     static constexpr int width = 32, height = 16;  ///< of a tile, pixels
     static constexpr int pixels = width * height;
@@ -30,7 +30,7 @@ struct TileGrid {
         return y / height * columns + x / width;
     }
 
-    // A tile's pixels are numbered in squares of 4 x 4: the 16 rays of a packet stay close
+    // A tile's pixels are numbered in squares of 4 x 4: rays that are traced together stay close
     // together.
     static glm::ivec2 place(int number) noexcept {
         const int square = number / 16, inside = number % 16;

@@ -5,11 +5,10 @@
 #include <map>
 #include <numbers>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "glb.h"
-#include "pieces.h"
+#include "shapes.h"
 
 namespace estara::examples::interior_room {
 
@@ -34,8 +33,6 @@ inline constexpr float half_width = 3.0f, back = -3.5f, front = 3.2f, height = 2
 inline constexpr float window_near = -0.2f, window_far = -2.2f, window_low = 0.85f,
                        window_high = 2.35f;
 inline constexpr float fire_x = -1.3f, breast_front = back + 0.45f;
-
-using Params = std::vector<std::pair<std::string, std::vector<double>>>;
 
 inline Material plastic_in(const char* name, const dvec3& Cs, double Ka = 0.35, double Ks = 0.0,
                            double roughness = 0.1) {

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -21,8 +22,9 @@ namespace estara {
 
 namespace {
 
-/// Rays that are traced with one call: the lanes of batches are padded to as many.
+/// Rays that are handled together: the lanes of batches are padded to as many.
 constexpr int group = 32;
+static_assert(batch_capacity % group == 0);
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 struct Release {
@@ -132,10 +134,19 @@ void prepare(const RayBatch& rays, Prepared& out) noexcept {
     }
 }
 
+/// Whether Embree traces packets of 16 as such: on AVX-512. Embree is asked, not instruction_set():
+/// it chooses its own code, whatever ours has been compiled for.
+bool has_native_16() noexcept {
+    static const bool has =
+        rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    return has;
+}
+
 /// Embree's functions for packets of so many rays, and whether several packets that go the same way
-/// are traced as one stream: an eighth to a fifth faster on AVX2 (measured). Not on AVX-512, where
-/// Embree 3.13.5 does not return from some coherent packets of occlusion rays.
-struct Eight {
+/// are traced as one stream: an eighth to a fifth faster on AVX2 (measured). Not on AVX-512: there
+/// Embree 3.13.5 does not return from some coherent packets of occlusion rays, and streams of
+/// primary rays have not been tried.
+struct Packet8 {
     static constexpr int width = 8;
     static constexpr bool has_streams = true;
     using Ray = RTCRay8;
@@ -143,7 +154,7 @@ struct Eight {
     static constexpr auto intersect = rtcIntersect8;
     static constexpr auto occluded = rtcOccluded8;
 };
-struct Sixteen {
+struct Packet16 {
     static constexpr int width = 16;
     static constexpr bool has_streams = false;
     using Ray = RTCRay16;
@@ -327,8 +338,7 @@ void occluded_group(RTCScene scene, const RayBatch& rays, const Prepared& prepar
 }  // namespace
 
 void RayScene::intersect(const RayBatch& rays, HitBatch& hits) const {
-    const auto trace = instruction_set() == InstructionSet::avx512 ? intersect_group<Sixteen>
-                                                                   : intersect_group<Eight>;
+    const auto trace = has_native_16() ? intersect_group<Packet16> : intersect_group<Packet8>;
     Prepared prepared;
     prepare(rays, prepared);
     for (int first = 0; first < rays.size; first += group) {
@@ -337,8 +347,7 @@ void RayScene::intersect(const RayBatch& rays, HitBatch& hits) const {
 }
 
 void RayScene::occluded(const RayBatch& rays, std::uint8_t* blocked) const {
-    const auto trace = instruction_set() == InstructionSet::avx512 ? occluded_group<Sixteen>
-                                                                   : occluded_group<Eight>;
+    const auto trace = has_native_16() ? occluded_group<Packet16> : occluded_group<Packet8>;
     Prepared prepared;
     prepare(rays, prepared);
     for (int first = 0; first < rays.size; first += group) {

@@ -176,10 +176,11 @@ ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int
     }
 }
 
-/// Lists the points in [first, last) that are near. Most are not, mostly.
+/// Lists the points in [first, last) that are near. Usually few are.
 /// @return  how many
 inline int list_near(int first, int last, Highlights& found) noexcept {
     constexpr int word = int(sizeof(std::uint64_t));
+    static_assert(SeenBatch::capacity % word == 0 && std::endian::native == std::endian::little);
     int count = 0;
     for (int i = first / word * word; i < last; i += word) {
         std::uint64_t near;

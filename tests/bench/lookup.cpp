@@ -136,7 +136,8 @@ public:
             m_rows.disagree(fmt::format("{}: colours differ by {}", name, m_difference));
         }
         const auto costs = rounds(round_count, contenders);
-        add_ns(name + "/estara", costs[0], P.size(), "BrickPyramid, batches of 512");
+        add_ns(name + "/estara", costs[0], P.size(),
+               fmt::format("BrickPyramid, batches of {}", batch_capacity));
         add_peer(name, "openvdb", 1, costs, P.size());
         add_peer(name, "nanovdb", 2, costs, P.size());
     }

@@ -16,7 +16,7 @@ struct Raster {
 
     int tiles() const noexcept { return width / tile_width * (height / tile_height); }
 
-    /// Rays through the centres of a tile's pixels, in packets of 4 x 4.
+    /// Rays through the centres of a tile's pixels, in squares of 4 x 4.
     void rays(const Camera& camera, int tile, RayBatch& out) const {
         const int columns = width / tile_width;
         const glm::ivec2 corner(tile % columns * tile_width, tile / columns * tile_height);

@@ -1,4 +1,4 @@
-// Shaders and what they are made of, a batch of 512 points at a time, on each instruction set.
+// Shaders and what they are made of, a batch of points at a time, on each instruction set.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 

@@ -324,7 +324,7 @@ TEST(Frame, CountsItsRaysAndTiles) {
     EXPECT_EQ(cost.lookups, 0u);
 }
 
-/// A batch holds 512 samples: many pixels, one, or a part of one.
+/// A batch holds many pixels, one, or a part of one.
 TEST(Frame, TakesEachSampleOnce) {
     const Scene scene = scene_of({object("ball", sphere(1.0f, 48), "wood")});
     FrameSettings settings = small();
@@ -332,7 +332,8 @@ TEST(Frame, TakesEachSampleOnce) {
     settings.height = 21;
     settings.spp = 64;
     const Film expected = render(scene, settings, direct(scene));
-    for (const int spp : {1, 3, 300, 512, 600, 1030}) {
+    constexpr int batch = batch_capacity;
+    for (const int spp : {1, 3, 300, batch, batch + 1, 2 * batch + 6}) {
         settings.spp = spp;
         FrameStatistics cost;
         const Film film = render(scene, settings, direct(scene), &cost);

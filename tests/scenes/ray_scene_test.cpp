@@ -236,8 +236,7 @@ TEST(RayScene, LetsRaysWithoutMeaningHitNothing) {
 TEST(RayScene, TracesABundleAsItsRaysOneByOne) {
     const Setting setting = settings()[1];
     const RayScene rays(setting.scene);
-    // Parallel to axes, where reciprocals are infinite, and at their borders; then every fifth ray
-    // is empty.
+    // Parallel to axes, where reciprocals are infinite, and nearly so. Every fifth ray is empty.
     for (const glm::vec3 along :
          {glm::vec3(0, 0, -1), glm::vec3(0.0f, -0.0f, -1), glm::vec3(-1, 0, 0),
           glm::vec3(1e-20f, -1e-20f, -1), glm::vec3(0.3f, -0.2f, -1)}) {

@@ -39,8 +39,8 @@ inline Ray shadow_ray(const PosedLight& light, const glm::vec3& origin,
     return {origin, light.position - origin, 0.0f, shadow_end};
 }
 
-/// Rays as structure of arrays: what packets are cut from. Neighbours in it should be neighbours in
-/// space.
+/// Rays as structure of arrays: what is traced together is cut from it. Neighbours in it should be
+/// neighbours in space.
 struct alignas(64) RayBatch {
     static constexpr int capacity = batch_capacity;
 

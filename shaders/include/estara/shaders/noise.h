@@ -18,7 +18,8 @@ namespace estara {
 namespace detail {
 
 /// Whole and fractional part of a coordinate. Beyond +-2^24, where floats have no fraction left,
-/// the whole part is 0 so that it fits an int; NaN gives a NaN fraction.
+/// the whole part is 0 so that it fits an int (all cells there are cell 0); NaN gives a NaN
+/// fraction.
 struct Lattice {
     int cell;
     float offset;
@@ -75,12 +76,11 @@ ESTARA_KERNEL float signed_by(std::uint32_t h, float x) noexcept {
     return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^ (h << 31));
 }
 
-/// Whether a bit of h is set; as a sign, for that is what blend instructions look at.
+/// Whether a bit of h is set; computed as a sign, for that is what blend instructions look at.
 ESTARA_KERNEL bool has_bit(std::uint32_t h, int bit) noexcept { return int(h << (31 - bit)) < 0; }
 
-/// (x, y, z) . one of the twelve edge directions of a cube, four of them twice (Perlin 2002): the
-/// first of two coordinates is x, or y where bit 3 is set; the second is y in the first quarter,
-/// x in two of the last four of 16, else z.
+/// (x, y, z) . one of the twelve edge directions of a cube, four of them twice (Perlin 2002). Of
+/// h's last four bits: u is x, or y from 8 on; v is y below 4, x for 12 and 14, else z.
 ESTARA_KERNEL float gradient(std::uint32_t h, float x, float y, float z) noexcept {
     const float u = has_bit(h, 3) ? y : x;
     const float z_or_x = (h & 13u) == 12u ? x : z;
