@@ -90,7 +90,7 @@ struct RawBrick {
 /// @param part  BrickPart::words(floats) words
 ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* part) noexcept {
     const std::array<CodeField, 4> fields = code_fields(floats);
-    alignas(32) std::array<std::int32_t, RawBrick::size> words{};
+    alignas(32) std::array<std::int32_t, RawBrick::size> words;
     for (int c = 0; c < floats; ++c) {
         const float* const value = raw[c].value.data();
         // The order of the comparisons leaves NaN out.
@@ -120,8 +120,8 @@ ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* 
             code = code == code ? code : Floats8{} + 0.5f * largest;
             code = (code < largest ? code : Floats8{} + largest) + 0.5f;
             const Ints8 bits = (__builtin_convertvector(code, Ints8) << field.shift) ^ flip;
-            Ints8 word;
-            std::memcpy(&word, words.data() + i, sizeof word);
+            Ints8 word{};
+            if (c > 0) std::memcpy(&word, words.data() + i, sizeof word);
             word |= bits;
             std::memcpy(words.data() + i, &word, sizeof word);
         }

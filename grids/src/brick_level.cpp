@@ -1,7 +1,6 @@
 // Makes a level's bricks from its blocks.
 #include "brick_level.h"
 
-#include <sys/mman.h>
 #include <tbb/parallel_for.h>
 
 #include <atomic>
@@ -129,15 +128,40 @@ struct Filling {
     std::size_t brick_words;
 };
 
+/// Asks for what gather() will read. Blocks are taken in the order of the index and their values
+/// lie in the order of the level: the processor does not foresee it.
+ESTARA_KERNEL void prefetch(const Near& near, const GridLevel& level) noexcept {
+    constexpr std::size_t line = 64 / sizeof(float);
+    for (std::size_t n = 0; n < 8; ++n) {
+        if (near[n] == nullptr) continue;
+        const std::size_t count = n == 0 ? std::size_t(near[n]->active.count())
+                                         : std::size_t(std::popcount(near[n]->active.words[0]));
+        for (const std::vector<float>& plane : level.planes) {
+            const float* const values = plane.data() + near[n]->first;
+            for (std::size_t i = 0; i < count; i += line) __builtin_prefetch(values + i);
+        }
+    }
+}
+
 /// Makes the bricks of one bottom table, from words on.
 ESTARA_KERNEL void fill_table(const Filling& job, std::size_t table,
                               std::uint32_t* words) noexcept {
+    std::array<std::uint32_t, BrickIndex::bottom_size> blocks;
+    std::size_t size = 0;
     job.index.for_each_block(table, [&](std::uint32_t b) {
-        const std::uint32_t mask = job.masks[b];
-        if (mask == 0) return;
+        if (job.masks[b] != 0) blocks[size++] = b;
+    });
+    if (size == 0) return;
+    Near next = neighbours(job.level.blocks, job.index, blocks[0]);
+    for (std::size_t i = 0; i < size; ++i) {
+        const Near near = next;
+        if (i + 1 < size) {
+            next = neighbours(job.level.blocks, job.index, blocks[i + 1]);
+            prefetch(next, job.level);
+        }
         RawBlock raw;
-        gather(neighbours(job.level.blocks, job.index, b), job.level, raw);
-        for (std::uint32_t left = mask; left != 0; left &= left - 1) {
+        gather(near, job.level, raw);
+        for (std::uint32_t left = job.masks[blocks[i]]; left != 0; left &= left - 1) {
             const auto octant = std::uint32_t(std::countr_zero(left));
             for (const BrickPart& part : job.parts) {
                 std::array<RawBrick, 4> bricks;
@@ -148,19 +172,7 @@ ESTARA_KERNEL void fill_table(const Filling& job, std::size_t table,
             }
             words += job.brick_words;
         }
-    });
-}
-
-/// Memory that is not touched before it is filled, in large pages if the system gives them: a
-/// lookup in no order costs a quarter less then.
-std::uint32_t* allocate(std::size_t words) {
-    constexpr std::size_t page = std::size_t{2} << 20;
-    const std::size_t bytes = std::max<std::size_t>(words, 1) * sizeof(std::uint32_t);
-    const std::size_t align = bytes < page ? 64 : page;
-    void* const memory = std::aligned_alloc(align, (bytes + align - 1) / align * align);
-    if (memory == nullptr) throw std::bad_alloc();
-    if (align == page) madvise(memory, bytes, MADV_HUGEPAGE);
-    return static_cast<std::uint32_t*>(memory);
+    }
 }
 
 /// By block, which bricks hold one of the cells.
@@ -197,7 +209,8 @@ BrickLevel::BrickLevel(const GridLevel& level, std::span<const BrickPart> parts,
     });
     for (std::uint32_t& f : first) f = std::exchange(bricks, bricks + f);
 
-    words.reset(allocate(std::size_t(bricks) * brick_words));
+    words = allocate_large_pages<std::uint32_t>(std::size_t(bricks) * brick_words);
+    if (!words) throw std::bad_alloc();
     const Filling job{level, index, parts, masks, brick_words};
     tbb::parallel_for(std::size_t{1}, index.tables(), [&](std::size_t table) {
         std::uint32_t* const to = words.get() + std::size_t(first[table]) * brick_words;

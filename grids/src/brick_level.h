@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +10,7 @@
 
 #include "brick_codes.h"
 #include "brick_index.h"
+#include "estara/scenes/large_pages.h"
 #include "estara/shaders/registry.h"
 
 namespace estara {
@@ -25,14 +24,10 @@ inline double within_int(double index) noexcept {
 }
 
 struct BrickLevel {
-    struct Free {
-        void operator()(std::uint32_t* words) const noexcept { std::free(words); }
-    };
-
     BrickIndex index;
     std::size_t brick_words;  ///< of all parts
     std::uint32_t bricks = 0;
-    std::unique_ptr<std::uint32_t[], Free> words;
+    LargePages<std::uint32_t> words;
 
     /// A brick for every 4^3 cells of which one has eight active voxels. In parallel.
     /// @param cells  if there, only the bricks that hold one of these are made

@@ -65,7 +65,7 @@ BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::v
         throw Error(fmt::format("{}: {} floats a voxel; a lookup takes 1 to {}", title(grid),
                                 m_floats, max_floats));
     }
-    check_finite(grid, title(grid));
+    const std::vector<float> means = finite_means(grid, title(grid));
     const int half = m_floats > 4 ? (m_floats + 1) / 2 : m_floats;
     m_parts.emplace_back(0, half, 0);
     if (half < m_floats) m_parts.emplace_back(half, m_floats - half, BrickPart::words(half));
@@ -85,7 +85,6 @@ BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::v
     }
     // Scales and codes of 0: the mean everywhere.
     m_miss.assign(m_levels.front().brick_words, 0);
-    const std::vector<float> means = plane_means(grid);
     for (const BrickPart& part : m_parts) {
         std::memcpy(m_miss.data() + part.offset, means.data() + part.first,
                     std::size_t(part.floats) * sizeof(float));

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <numeric>
 #include <stdexcept>
 
 #include "blocks.h"
@@ -307,6 +308,32 @@ std::string channel_of(const TextureGrid& grid, int c) {
     return "?";
 }
 
+/// Sum of every plane, formed by pieces that depend on nothing but the number of rows: the same for
+/// any thread count.
+std::vector<double> plane_sums(const GridLevel& level) {
+    constexpr std::size_t piece_rows = 1 << 14, lanes = 8;
+    const std::size_t planes = level.planes.size(), rows = std::size_t(level.voxels()),
+                      pieces = (rows + piece_rows - 1) / piece_rows;
+    std::vector<double> parts(planes * pieces);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+        const std::size_t begin = i % pieces * piece_rows, end = std::min(begin + piece_rows, rows);
+        const float* const plane = level.planes[i / pieces].data();
+        std::array<double, lanes> sums{};
+        std::size_t row = begin;
+        for (; row + lanes <= end; row += lanes) {
+            for (std::size_t k = 0; k < lanes; ++k) sums[k] += double(plane[row + k]);
+        }
+        for (; row < end; ++row) sums[0] += double(plane[row]);
+        parts[i] = std::accumulate(sums.begin(), sums.end(), 0.0);
+    });
+    std::vector<double> sums(planes);
+    for (std::size_t c = 0; c < planes; ++c) {
+        const auto first = parts.begin() + std::ptrdiff_t(c * pieces);
+        sums[c] = std::accumulate(first, first + std::ptrdiff_t(pieces), 0.0);
+    }
+    return sums;
+}
+
 }  // namespace
 
 void add_levels(TextureGrid& grid) {
@@ -336,31 +363,22 @@ void round_to_half(TextureGrid& grid) {
     }
 }
 
-std::vector<float> plane_means(const TextureGrid& grid) {
+std::vector<float> finite_means(const TextureGrid& grid, const std::string& where) {
     std::vector<float> means(std::size_t(grid.floats()), 0.0f);
-    if (grid.levels.empty()) return means;
-    tbb::parallel_for(std::size_t{0}, means.size(), [&](std::size_t c) {
-        const std::vector<float>& plane = grid.levels.front().planes[c];
-        double sum = 0.0;
-        for (const float value : plane) sum += value;
-        if (!plane.empty()) means[c] = float(sum / double(plane.size()));
-    });
-    return means;
-}
-
-void check_finite(const TextureGrid& grid, const std::string& where) {
     for (std::size_t n = 0; n < grid.levels.size(); ++n) {
-        const GridLevel& level = grid.levels[n];
-        std::vector<char> bad(level.planes.size(), 0);
-        tbb::parallel_for(std::size_t{0}, level.planes.size(), [&](std::size_t c) {
-            bad[c] = !std::all_of(level.planes[c].begin(), level.planes[c].end(),
-                                  [](float v) { return std::isfinite(v); });
-        });
-        const auto first = std::find(bad.begin(), bad.end(), 1);
-        if (first == bad.end()) continue;
-        throw Error(fmt::format("{}: channel \"{}\" has a value on level {} that is not finite",
-                                where, channel_of(grid, int(first - bad.begin())), n));
+        const std::vector<double> sums = plane_sums(grid.levels[n]);
+        // Floats are too small for a sum of theirs to leave the doubles.
+        const auto bad =
+            std::find_if(sums.begin(), sums.end(), [](double sum) { return !std::isfinite(sum); });
+        if (bad != sums.end()) {
+            throw Error(fmt::format("{}: channel \"{}\" has a value on level {} that is not finite",
+                                    where, channel_of(grid, int(bad - sums.begin())), n));
+        }
+        const std::uint64_t voxels = grid.levels[n].voxels();
+        if (n > 0 || voxels == 0) continue;
+        for (std::size_t c = 0; c < means.size(); ++c) means[c] = float(sums[c] / double(voxels));
     }
+    return means;
 }
 
 }  // namespace estara

@@ -158,17 +158,20 @@ VdbLayout vdb_layout(const std::string& path, const MappedFile& file) {
     return layout;
 }
 
-VdbLayout check_vdb_bytes(const std::string& path, const MappedFile& file) {
+VdbLayout whole_vdb_layout(const std::string& path, const MappedFile& file) {
     VdbLayout layout = vdb_layout(path, file);
     if (layout.needed > layout.size) {
         throw Error(fmt::format("{}: cut short: {} bytes of at least {}; bake it again", path,
                                 layout.size, layout.needed));
     }
+    return layout;
+}
+
+void check_vdb_digest(const std::string& path, const MappedFile& file, const VdbLayout& layout) {
     if (layout.digest_at != 0 &&
         file.bytes().substr(layout.digest_at, digest_size) != vdb_digest(file, layout)) {
         damaged(path, "its bytes are not those that were written");
     }
-    return layout;
 }
 
 std::string vdb_digest(const MappedFile& file, const VdbLayout& layout) {

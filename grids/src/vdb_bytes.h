@@ -92,9 +92,11 @@ struct VdbLayout {
 /// @param path  for messages
 VdbLayout vdb_layout(const std::string& path, const MappedFile& file);
 
-/// Throws unless the file is whole and its digest, if it has one, is that of its bytes.
-/// @return  its layout
-VdbLayout check_vdb_bytes(const std::string& path, const MappedFile& file);
+/// vdb_layout(), and an Error if the file is cut short.
+VdbLayout whole_vdb_layout(const std::string& path, const MappedFile& file);
+
+/// Error unless the file's digest, if it has one, is that of its bytes. Reads all of them.
+void check_vdb_digest(const std::string& path, const MappedFile& file, const VdbLayout& layout);
 
 /// Digest of all bytes but the file's random id and the digest's own characters, 16 hex digits.
 std::string vdb_digest(const MappedFile& file, const VdbLayout& layout);

@@ -7,16 +7,21 @@
 #include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <boost/interprocess/streams/bufferstream.hpp>
 #include <cmath>
+#include <exception>
+#include <limits>
 #include <map>
 #include <new>
 #include <set>
 
 #include "blocks.h"
 #include "estara/scenes/error.h"
+#include "estara/scenes/large_pages.h"
 #include "vdb_bytes.h"
 #include "vdb_names.h"
 #include "vdb_tree.h"
@@ -142,7 +147,6 @@ private:
             for (int n = 0; n < levels; ++n) read_channel(n, to);
         }
         if (to.channels.empty()) fail("it says it has no channels");
-        check_finite(to, m_path);
         return to;
     }
 
@@ -208,9 +212,10 @@ private:
                         ByteCursor(m_bytes.substr(0, stored.end), stored.buffers), format);
         std::erase_if(leaves, [](const StoredLeaf& leaf) { return !leaf.active.any(); });
         if (leaves.empty()) throw BadTree{"has no voxels"};
-        std::sort(leaves.begin(), leaves.end(), [](const StoredLeaf& a, const StoredLeaf& b) {
-            return comes_before(a.origin, b.origin);
-        });
+        tbb::parallel_sort(leaves.begin(), leaves.end(),
+                           [](const StoredLeaf& a, const StoredLeaf& b) {
+                               return comes_before(a.origin, b.origin);
+                           });
         if (to.planes.empty()) {
             to.blocks = blocks_of(leaves);
         } else if (!std::equal(leaves.begin(), leaves.end(), to.blocks.begin(), to.blocks.end(),
@@ -221,8 +226,12 @@ private:
         }
         const std::size_t first = to.planes.size(), count = std::size_t(components);
         to.planes.resize(first + count);
-        tbb::parallel_for(std::size_t{0}, count,
-                          [&](std::size_t c) { to.planes[first + c].resize(to.voxels()); });
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t c) {
+            std::vector<float>& plane = to.planes[first + c];
+            plane.reserve(to.voxels());
+            prefer_large_pages(plane.data(), to.voxels() * sizeof(float));
+            plane.resize(to.voxels());
+        });
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& some) {
                               ValueDecoder decoder(format);
@@ -253,9 +262,12 @@ private:
         const auto stored = has_all ? std::size_t{512} : std::size_t(leaf.active.count());
         if (!decoder.decode(leaf.values, stored, values.data())) throw BadTree{"is damaged"};
         std::size_t from = 0;
+        bool is_finite = true;
         const auto put = [&](std::size_t value) {
             for (std::size_t c = 0; c < components; ++c) {
-                planes[c][row] = values[value * components + c];
+                const float v = values[value * components + c];
+                is_finite &= std::abs(v) <= std::numeric_limits<float>::max();
+                planes[c][row] = v;
             }
             ++row;
         };
@@ -265,6 +277,7 @@ private:
         } else {
             while (from < stored) put(from++);
         }
+        if (!is_finite) throw BadTree{"has a value that is not finite"};
     }
 
     std::string m_path;
@@ -278,10 +291,24 @@ private:
 
 std::vector<TextureGrid> read_vdb(const std::string& path) {
     const MappedFile file(path);
-    const VdbLayout layout = check_vdb_bytes(path, file);
+    const VdbLayout layout = whole_vdb_layout(path, file);
     openvdb::initialize();
+    // The digest is one long chain: it takes the time in which one core looks for the leaves. Files
+    // without a digest are read as well, so nothing depends on its being right; what it says comes
+    // first.
+    tbb::task_group digest;
+    digest.run([&] { check_vdb_digest(path, file, layout); });
+    std::vector<TextureGrid> grids;
+    std::exception_ptr failure;
     try {
-        return Reader(path, file, layout).objects();
+        grids = Reader(path, file, layout).objects();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    digest.wait();
+    try {
+        if (failure) std::rethrow_exception(failure);
+        return grids;
     } catch (const openvdb::Exception& e) {
         damaged(path, reason(e));
     } catch (const std::ios::failure&) {

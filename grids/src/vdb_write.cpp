@@ -180,7 +180,9 @@ Plan density_plan(const TextureGrid& from, bool half) {
     return plan;
 }
 
-void check_writable(const std::string& path, const TextureGrid& grid) {
+/// Throws what is wrong with a grid.
+/// @return  its finite_means()
+std::vector<float> check_writable(const std::string& path, const TextureGrid& grid) {
     const std::string title = grid.object.empty() ? path : path + ": object \"" + grid.object + '"';
     if (grid.levels.empty() || grid.levels[0].blocks.empty()) {
         throw Error(title + ": there are no voxels to write");
@@ -193,7 +195,7 @@ void check_writable(const std::string& path, const TextureGrid& grid) {
     if (!grid.distance.empty() && grid.distance.size() != grid.levels[0].voxels()) {
         throw std::invalid_argument("write_vdb: distances that do not match the voxels");
     }
-    check_finite(grid, title);
+    return finite_means(grid, title);
 }
 
 /// Channels level by level, then surface and density, of every TextureGrid.
@@ -202,12 +204,11 @@ std::vector<Plan> plans(const std::string& path, const std::vector<TextureGrid>&
     for (const TextureGrid& grid : grids) objects.insert(grid.object);
     std::vector<Plan> result;
     for (const TextureGrid& grid : grids) {
-        check_writable(path, grid);
+        const std::vector<float> means = check_writable(path, grid);
         const auto add = [&](const std::string& what, Plan plan) {
             plan.name = grid_name(what, object_suffix(objects, grid.object), plan.level);
             result.push_back(std::move(plan));
         };
-        const std::vector<float> means = plane_means(grid);
         std::size_t first = 0;
         for (std::size_t c = 0; c < grid.channels.size(); ++c) {
             for (int n = 0; n < int(grid.levels.size()); ++n) {

@@ -1,10 +1,8 @@
 #include "estara/render/reuse_cache.h"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -26,8 +24,6 @@ RecordLayout record_layout(const ShaderInfo& info, int lights) noexcept {
     return {normal < 0 ? info.baked_floats : normal, lights};
 }
 
-void ReuseCache::Free::operator()(float* memory) const noexcept { std::free(memory); }
-
 ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
                        std::vector<int> objects)
     : m_layouts(std::move(layouts)), m_objects(std::move(objects)) {
@@ -38,15 +34,12 @@ ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,
                                 format_bytes(bytes), format_bytes(page_bytes)));
     }
     // The system gives memory of this size when it is first touched. Records of a tile lie in many
-    // places: huge pages spare the processor the search for them.
-    constexpr std::size_t huge = std::size_t{2} << 20;
-    const std::size_t rounded = (pages * page_bytes + huge - 1) / huge * huge;
-    m_memory.reset(static_cast<float*>(std::aligned_alloc(huge, rounded)));
+    // places: large pages spare the processor the search for them.
+    m_memory = allocate_large_pages<float>(pages * page_bytes / sizeof(float));
     if (!m_memory) {
         throw Error(fmt::format("--cache-memory: {} cannot be had", format_bytes(bytes)),
                     ExitStatus::failed);
     }
-    madvise(m_memory.get(), rounded, MADV_HUGEPAGE);
     m_pages.resize(pages);
     for (const RecordLayout& layout : m_layouts) {
         if (std::size_t(layout.floats()) * sizeof(float) > page_bytes / 2) {

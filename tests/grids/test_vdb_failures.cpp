@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstring>
 #include <limits>
+#include <random>
 
 #include "estara/grids/texture_grid.h"
 #include "estara/grids/vdb_sampler.h"
@@ -133,6 +135,27 @@ TEST(ReadVdb, RefusesVoxelsThatAreNotThere) {
     EXPECT_EQ(with(at - 8, std::string(8, '\x80')), damaged);           // and of plain values
     EXPECT_EQ(with(at - 8, std::string(8, '\0')), damaged);             // nothing
     EXPECT_EQ(with(at - 8 - 1 - 64, std::string(8, '\x55')), damaged);  // other voxels
+}
+
+TEST(ReadVdb, RefusesAValueThatIsNotANumber) {
+    const TemporaryFolder folder;
+    TextureGrid grid = complete_grid("", 0.2);
+    std::minstd_rand random;  // what zip cannot pack
+    for (float& value : grid.levels[0].planes[3]) value = float(random());
+    const std::string known("\x12\x34\x56\x3f", sizeof(float));
+    std::memcpy(&grid.levels[0].planes[3][7], known.data(), known.size());
+    write_vdb(folder.file("whole.vdb"), {grid}, {});
+    std::string bytes = read_bytes(folder.file("whole.vdb"));
+    const std::string path = folder.file("a.vdb");
+    ASSERT_NE(bytes.find(known), std::string::npos);
+    replace_all(bytes, known, std::string("\0\0\xc0\x7f", sizeof(float)));
+    write_bytes(path, bytes);
+    EXPECT_EQ(read_error(path),
+              path + ": damaged: its bytes are not those that were written; bake it again");
+    replace_all(bytes, "estara_digest", "unknown_thing");
+    write_bytes(path, bytes);
+    EXPECT_EQ(read_error(path),
+              path + ": grid \"specular\" has a value that is not finite; bake it again");
 }
 
 TEST(ReadVdb, SaysThatAFormatIsUnknown) {

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
 #include <vector>
 
+#include "estara/scenes/large_pages.h"
 #include "estara/shaders/registry.h"
 
 namespace estara {
@@ -140,12 +140,9 @@ private:
     int take_page();
     static constexpr int idle_share = 8, most_idle = 8;
 
-    struct Free {
-        void operator()(float* memory) const noexcept;
-    };
     std::vector<RecordLayout> m_layouts;
     std::vector<int> m_objects;
-    std::unique_ptr<float, Free> m_memory;
+    LargePages<float> m_memory;
     std::vector<Page> m_pages;
     int m_touched = 0;
     std::vector<int> m_free;   ///< pages below m_touched, the next one last
