@@ -33,6 +33,20 @@ constexpr int zip_level = 1;
 /// rest of reading it.
 constexpr std::size_t worth_zipping(std::size_t size) { return size - size / 5; }
 
+/// Whether a sixteenth of the floats are the one before or that of the value before. Nodes of whole
+/// floats without such repeats hardly ever shrink by a fifth: trying took two thirds of the time in
+/// which noise was written.
+bool has_repeats(const char* data, std::size_t floats, int components) {
+    std::array<std::uint32_t, most_floats> bits;
+    std::memcpy(bits.data(), data, floats * sizeof(float));
+    const auto value = std::size_t(components);
+    std::size_t repeats = 0;
+    for (std::size_t i = value; i < floats; ++i) {
+        repeats += std::size_t((bits[i] == bits[i - 1]) | (bits[i] == bits[i - value]));
+    }
+    return 16 * repeats >= floats;
+}
+
 bool has(const ValueFormat& format, std::uint32_t flag) { return (format.compression & flag) != 0; }
 
 void append_raw(const void* data, std::size_t size, std::string& out) {
@@ -61,8 +75,11 @@ struct ValueEncoder::Impl {
     std::array<char, most_floats * sizeof(float)> packed;
 
     void append_zip(const char* data, std::size_t size, std::string& out) {
-        const std::size_t got =
-            libdeflate_zlib_compress(zip.get(), data, size, packed.data(), worth_zipping(size));
+        std::size_t got = 0;
+        if (format.half || has_repeats(data, size / sizeof(float), format.components)) {
+            got =
+                libdeflate_zlib_compress(zip.get(), data, size, packed.data(), worth_zipping(size));
+        }
         const std::int64_t told = got > 0 ? std::int64_t(got) : -std::int64_t(size);
         append_raw(&told, sizeof told, out);
         append_raw(got > 0 ? packed.data() : data, got > 0 ? got : size, out);
