@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -90,7 +89,7 @@ struct RawBrick {
 /// @param part  BrickPart::words(floats) words
 ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* part) noexcept {
     const std::array<CodeField, 4> fields = code_fields(floats);
-    alignas(32) std::array<std::int32_t, RawBrick::size> words;
+    std::uint32_t* const words = part + 2 * floats;
     for (int c = 0; c < floats; ++c) {
         const float* const value = raw[c].value.data();
         // The order of the comparisons leaves NaN out.
@@ -113,7 +112,8 @@ ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* 
         const float per_step = std::min(1.0f / step, std::numeric_limits<float>::max());
         const std::int32_t flip =
             field.has_sign_bit() ? std::numeric_limits<std::int32_t>::min() : 0;
-        for (int i = 0; i < RawBrick::size; i += 8) {
+        for (int n = 0; n < RawBrick::size; n += 8) {
+            const int i = std::min(n, int(brick_voxels) - 8);  // the last eight again, in part
             Floats8 v;
             std::memcpy(&v, value + i, sizeof v);
             Floats8 code = (v - low) * per_step;
@@ -121,17 +121,16 @@ ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* 
             code = (code < largest ? code : Floats8{} + largest) + 0.5f;
             const Ints8 bits = (__builtin_convertvector(code, Ints8) << field.shift) ^ flip;
             Ints8 word{};
-            if (c > 0) std::memcpy(&word, words.data() + i, sizeof word);
+            if (c > 0) std::memcpy(&word, words + i, sizeof word);
             word |= bits;
-            std::memcpy(words.data() + i, &word, sizeof word);
+            std::memcpy(words + i, &word, sizeof word);
         }
         const float half = field.has_sign_bit() ? 0.5f * (largest + 1.0f) : 0.0f;
         const float range[2] = {float(double(low) + double(step) * double(half)),
-                                std::ldexp(step, -field.shift)};
+                                step / float(std::uint32_t{1} << field.shift)};
         std::memcpy(part + c, &range[0], sizeof(float));
         std::memcpy(part + floats + c, &range[1], sizeof(float));
     }
-    std::memcpy(part + 2 * floats, words.data(), brick_voxels * sizeof(std::uint32_t));
 }
 
 /// Trilinear value of a cell: up to four floats, what is beyond them has no meaning.
