@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 
@@ -153,17 +152,8 @@ ESTARA_KERNEL void view_loop(const S shader, const float* planes, const SeenBatc
     }
 }
 
-/// The points of a batch at which a light shows a highlight, side by side.
-struct Highlights {
-    /// By point: 1 where there is one. Eight are read at once.
-    alignas(64) std::uint8_t near[SeenBatch::capacity];
-    int point[SeenBatch::capacity];
-    SeenBatch seen;
-    float Ci[3][SeenBatch::capacity];
-};
-
-/// near[i] = 1 where N.H is at least `cosine` and the light is not 0. H is not normalised:
-/// N.(L + V) >= cosine |L + V|.
+/// Marks the points where a light of Cl > 0 is at least so near its mirror direction, N.H >=
+/// cosine. H is not normalised: N.(L + V) >= cosine |L + V|.
 ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int last,
                              std::uint8_t* __restrict near) noexcept {
     const float square = cosine * cosine;
@@ -176,53 +166,30 @@ ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int
     }
 }
 
-/// Lists the points in [first, last) that are near. Usually few are.
-/// @return  how many
-inline int list_near(int first, int last, Highlights& found) noexcept {
-    constexpr int word = int(sizeof(std::uint64_t));
-    static_assert(SeenBatch::capacity % word == 0 && std::endian::native == std::endian::little);
-    int count = 0;
-    for (int i = first / word * word; i < last; i += word) {
-        std::uint64_t near;
-        std::memcpy(&near, found.near + i, sizeof near);
-        for (; near != 0; near &= near - 1) {
-            const int point = i + std::countr_zero(near) / 8;
-            found.point[count] = point;
-            count += int(point >= first && point < last);
-        }
-    }
-    return count;
-}
-
-/// What a light alone makes, where that is a highlight and nothing else: evaluated where there is
-/// one, 0 elsewhere. A point has the same bits in any batch.
+/// What a light alone makes, where that is a highlight and nothing else: 0 where the light is not
+/// near() and, since points follow each other as they are seen, nothing to do for most of them.
 template <class S>
-void view_highlights(const S& shader, float cosine, const float* planes, const SeenBatch& seen,
-                     int first, int last, float* Ci, InstructionSet limit) noexcept {
-    constexpr int stride = SeenBatch::capacity;
-    constexpr int floats = int(sizeof(typename S::Baked) / sizeof(float));
-    thread_local Highlights found;
-    thread_local float picked[floats * stride];
-    Highlights* const to = &found;
-    wide([=, &seen]() ESTARA_LOOP { near_loop(cosine, seen, first, last, to->near); }, limit);
-    const int count = list_near(first, last, *to);
-    for (int c = 0; c < 3; ++c) std::fill(Ci + c * stride + first, Ci + c * stride + last, 0.0f);
-    if (count == 0) return;
-    const auto pick = [&](const float* from, float* plane) {
-        for (int k = 0; k < count; ++k) plane[k] = from[to->point[k]];
+ESTARA_KERNEL void highlight_loop(const S shader, float cosine, const float* planes,
+                                  const SeenBatch& seen, int first, int last,
+                                  float* __restrict Ci) noexcept {
+    constexpr int stride = SeenBatch::capacity, step = 16;
+    alignas(64) std::uint8_t near[SeenBatch::capacity + step] = {};
+    near_loop(cosine, seen, first, last, near);
+    const auto any = [&near](int begin) {
+        std::uint64_t flags[step / 8];
+        std::memcpy(flags, near + begin, step);
+        return (flags[0] | flags[1]) != 0;
     };
-    for (int c = 0; c < 3; ++c) {
-        pick(seen.N[c], to->seen.N[c]);
-        pick(seen.L[c], to->seen.L[c]);
-        pick(seen.Cl[c], to->seen.Cl[c]);
-    }
-    to->seen.V.pick(seen.V, to->point, count);
-    for (int k = 0; k < floats; ++k) pick(planes + k * stride, picked + k * stride);
-    const float* const baked = picked;
-    wide([=]() ESTARA_LOOP { view_loop<true>(shader, baked, to->seen, 0, count, to->Ci[0]); },
-         limit);
-    for (int c = 0; c < 3; ++c) {
-        for (int k = 0; k < count; ++k) Ci[c * stride + to->point[k]] = to->Ci[c][k];
+    for (int begin = first, end = first; begin < last; begin = end) {
+        const bool lit = any(begin);
+        for (end += step; end < last && any(end) == lit;) end += step;
+        end = std::min(end, last);
+        if (lit) view_loop<true>(shader, planes, seen, begin, end, Ci);
+        for (int c = 0; c < 3; ++c) {
+            float* const plane = Ci + c * stride;
+            if (!lit) std::fill(plane + begin, plane + end, 0.0f);
+            for (int i = begin; lit && i < end; ++i) plane[i] = near[i] ? plane[i] : 0.0f;
+        }
     }
 }
 
@@ -247,7 +214,11 @@ void Loops<S>::view(const S& shader, const float* planes, const SeenBatch& seen,
             // Where highlights are broad, looking for them costs what it saves (measured).
             const float cosine = shader.highlight_cosine();
             if (cosine > 0.7f) {
-                return view_highlights(shader, cosine, planes, seen, first, last, Ci, limit);
+                return wide(
+                    [=, &seen]() ESTARA_LOOP {
+                        highlight_loop(shader, cosine, planes, seen, first, last, Ci);
+                    },
+                    limit);
             }
         }
         wide([=, &seen]() ESTARA_LOOP { view_loop<true>(shader, planes, seen, first, last, Ci); },

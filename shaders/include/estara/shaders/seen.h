@@ -33,13 +33,6 @@ public:
         return ViewDirection({m_v[0][i], m_v[1][i], m_v[2][i]});
     }
 
-    /// Takes the directions of so many of another's points.
-    void pick(const ViewDirections& from, const int* points, int count) noexcept {
-        for (int c = 0; c < 3; ++c) {
-            for (int k = 0; k < count; ++k) m_v[c][k] = from.m_v[c][points[k]];
-        }
-    }
-
 private:
     friend class Camera;
     float m_v[3][batch_capacity];
