@@ -208,6 +208,95 @@ RTCIntersectContext context_with(RTCIntersectContextFlags flags) noexcept {
     return context;
 }
 
+template <class Packet>
+void intersect_group(RTCScene scene, const RayBatch& rays, const Prepared& prepared, int first,
+                     HitBatch& hits) {
+    constexpr int width = Packet::width, packets = group / width;
+    std::array<typename Packet::RayHit, packets> trace;
+    for (int p = 0; p < packets; ++p) {
+        fill<Packet>(rays, prepared, first + p * width, trace[p].ray);
+        std::fill_n(trace[p].hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(trace[p].hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
+    }
+    if (Packet::has_streams && same_octant(prepared, first, group)) {
+        RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+        rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(trace.data()), width, packets,
+                       sizeof trace[0]);
+    } else {
+        for (int p = 0; p < packets; ++p) {
+            // Primary rays take half the time this way (measured on the still life).
+            RTCIntersectContext context =
+                context_with(same_octant(prepared, first + p * width, width)
+                                 ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                 : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+            Packet::intersect(prepared.valid + first + p * width, scene, &context, &trace[p]);
+        }
+    }
+    static_assert(Hit::none == RTC_INVALID_GEOMETRY_ID);
+    for (int p = 0; p < packets; ++p) {
+        for (int i = 0; i < width; ++i) {
+            const int j = first + p * width + i;
+            hits.instance[j] = trace[p].hit.instID[0][i];
+            hits.triangle[j] = trace[p].hit.primID[i];
+            hits.b1[j] = trace[p].hit.u[i];
+            hits.b2[j] = trace[p].hit.v[i];
+            hits.t[j] = trace[p].ray.tfar[i] * prepared.scale[j];
+        }
+    }
+}
+
+template <class Packet>
+void occluded_group(RTCScene scene, const RayBatch& rays, const Prepared& prepared, int first,
+                    std::uint8_t* blocked) {
+    constexpr int width = Packet::width, packets = group / width;
+    std::array<typename Packet::Ray, packets> trace;
+    for (int p = 0; p < packets; ++p) {
+        fill<Packet>(rays, prepared, first + p * width, trace[p]);
+    }
+    if (Packet::has_streams && same_octant(prepared, first, group)) {
+        RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+        rtcOccludedNM(scene, &context, reinterpret_cast<RTCRayN*>(trace.data()), width, packets,
+                      sizeof trace[0]);
+    } else {
+        for (int p = 0; p < packets; ++p) {
+            RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+            Packet::occluded(prepared.valid + first + p * width, scene, &context, &trace[p]);
+        }
+    }
+    // Embree says "blocked" by an infinitely negative end of the ray.
+    const int count = std::min(group, rays.size - first);
+    for (int i = 0; i < count; ++i) {
+        blocked[first + i] = prepared.valid[first + i] && trace[i / width].tfar[i % width] < 0.0f;
+    }
+}
+
+/// Calls trace(packet, prepared, first) for every group of a batch's rays.
+template <class Trace>
+void for_each_group(const RayBatch& rays, const Trace& trace) {
+    const bool by_16 = has_native_16();
+    Prepared prepared;
+    prepare(rays, prepared);
+    for (int first = 0; first < rays.size; first += group) {
+        if (by_16) {
+            trace(Packet16(), prepared, first);
+        } else {
+            trace(Packet8(), prepared, first);
+        }
+    }
+}
+
+/// Calls trace(batch, first) for as many batches as the rays fill.
+template <class Trace>
+void in_batches(std::span<const Ray> rays, const Trace& trace) {
+    const auto batch = std::make_unique<RayBatch>();
+    for (std::size_t first = 0; first < rays.size(); first += RayBatch::capacity) {
+        batch->size = 0;
+        const std::size_t last = std::min(first + RayBatch::capacity, rays.size());
+        for (std::size_t i = first; i < last; ++i) batch->push(rays[i]);
+        trace(*batch, first);
+    }
+}
+
 }  // namespace
 
 struct RayScene::Impl {
@@ -271,105 +360,17 @@ RayScene::~RayScene() = default;
 
 void RayScene::set_pose(const Pose& pose) { m_impl->set_pose(pose); }
 
-namespace {
-
-template <class Packet>
-void intersect_group(RTCScene scene, const RayBatch& rays, const Prepared& prepared, int first,
-                     HitBatch& hits) {
-    constexpr int width = Packet::width, packets = group / width;
-    std::array<typename Packet::RayHit, packets> trace;
-    for (int p = 0; p < packets; ++p) {
-        fill<Packet>(rays, prepared, first + p * width, trace[p].ray);
-        std::fill_n(trace[p].hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
-        std::fill_n(trace[p].hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
-    }
-    if (Packet::has_streams && same_octant(prepared, first, group)) {
-        RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-        rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(trace.data()), width, packets,
-                       sizeof trace[0]);
-    } else {
-        for (int p = 0; p < packets; ++p) {
-            // Primary rays take half the time this way (measured on the still life).
-            RTCIntersectContext context =
-                context_with(same_octant(prepared, first + p * width, width)
-                                 ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                 : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-            Packet::intersect(prepared.valid + first + p * width, scene, &context, &trace[p]);
-        }
-    }
-    static_assert(Hit::none == RTC_INVALID_GEOMETRY_ID);
-    for (int p = 0; p < packets; ++p) {
-        for (int i = 0; i < width; ++i) {
-            const int j = first + p * width + i;
-            hits.instance[j] = trace[p].hit.instID[0][i];
-            hits.triangle[j] = trace[p].hit.primID[i];
-            hits.b1[j] = trace[p].hit.u[i];
-            hits.b2[j] = trace[p].hit.v[i];
-            hits.t[j] = trace[p].ray.tfar[i] * prepared.scale[j];
-        }
-    }
-}
-
-template <class Packet>
-void occluded_group(RTCScene scene, const RayBatch& rays, const Prepared& prepared, int first,
-                    std::uint8_t* blocked) {
-    constexpr int width = Packet::width, packets = group / width;
-    std::array<typename Packet::Ray, packets> trace;
-    for (int p = 0; p < packets; ++p) {
-        fill<Packet>(rays, prepared, first + p * width, trace[p]);
-    }
-    if (Packet::has_streams && same_octant(prepared, first, group)) {
-        RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-        rtcOccludedNM(scene, &context, reinterpret_cast<RTCRayN*>(trace.data()), width, packets,
-                      sizeof trace[0]);
-    } else {
-        for (int p = 0; p < packets; ++p) {
-            RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-            Packet::occluded(prepared.valid + first + p * width, scene, &context, &trace[p]);
-        }
-    }
-    // Embree says "blocked" by an infinitely negative end of the ray.
-    const int count = std::min(group, rays.size - first);
-    for (int i = 0; i < count; ++i) {
-        blocked[first + i] = prepared.valid[first + i] && trace[i / width].tfar[i % width] < 0.0f;
-    }
-}
-
-}  // namespace
-
 void RayScene::intersect(const RayBatch& rays, HitBatch& hits) const {
-    const auto trace = has_native_16() ? intersect_group<Packet16> : intersect_group<Packet8>;
-    Prepared prepared;
-    prepare(rays, prepared);
-    for (int first = 0; first < rays.size; first += group) {
-        trace(m_impl->top.get(), rays, prepared, first, hits);
-    }
+    for_each_group(rays, [&](auto packet, const Prepared& prepared, int first) {
+        intersect_group<decltype(packet)>(m_impl->top.get(), rays, prepared, first, hits);
+    });
 }
 
 void RayScene::occluded(const RayBatch& rays, std::uint8_t* blocked) const {
-    const auto trace = has_native_16() ? occluded_group<Packet16> : occluded_group<Packet8>;
-    Prepared prepared;
-    prepare(rays, prepared);
-    for (int first = 0; first < rays.size; first += group) {
-        trace(m_impl->top.get(), rays, prepared, first, blocked);
-    }
+    for_each_group(rays, [&](auto packet, const Prepared& prepared, int first) {
+        occluded_group<decltype(packet)>(m_impl->top.get(), rays, prepared, first, blocked);
+    });
 }
-
-namespace {
-
-/// Calls trace(batch, first) for as many batches as the rays fill.
-template <class Trace>
-void in_batches(std::span<const Ray> rays, const Trace& trace) {
-    const auto batch = std::make_unique<RayBatch>();
-    for (std::size_t first = 0; first < rays.size(); first += RayBatch::capacity) {
-        batch->size = 0;
-        const std::size_t last = std::min(first + RayBatch::capacity, rays.size());
-        for (std::size_t i = first; i < last; ++i) batch->push(rays[i]);
-        trace(*batch, first);
-    }
-}
-
-}  // namespace
 
 void RayScene::intersect(std::span<const Ray> rays, Hit* hits) const {
     const auto found = std::make_unique<HitBatch>();
