@@ -28,8 +28,8 @@ inline std::ptrdiff_t find_block(const std::vector<Block>& blocks,
 
 /// Mean of every plane over the finest level's voxels: the background of the channel's grids and
 /// what a lookup away from the surface returns. The same for any thread count. 0 for a grid without
-/// voxels. Error if a value on any level is infinite or not a number, naming `where`, channel and
-/// level.
+/// voxels. Planes have a value for each voxel. Error if a value on any level is infinite or not a
+/// number, naming `where`, channel and level.
 std::vector<float> finite_means(const TextureGrid& grid, const std::string& where);
 
 /// The nearest half float, as a float; beyond the largest half (65504) that one, not infinity.

@@ -134,8 +134,8 @@ ESTARA_KERNEL void prefetch(const Near& near, const GridLevel& level) noexcept {
     constexpr std::size_t line = 64 / sizeof(float);
     for (std::size_t n = 0; n < 8; ++n) {
         if (near[n] == nullptr) continue;
-        const std::size_t count = n == 0 ? std::size_t(near[n]->active.count())
-                                         : std::size_t(std::popcount(near[n]->active.words[0]));
+        const std::size_t count = n < 4 ? std::size_t(near[n]->active.count())
+                                        : std::size_t(std::popcount(near[n]->active.words[0]));
         for (const std::vector<float>& plane : level.planes) {
             const float* const values = plane.data() + near[n]->first;
             for (std::size_t i = 0; i < count; i += line) __builtin_prefetch(values + i);

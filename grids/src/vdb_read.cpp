@@ -11,6 +11,7 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/interprocess/streams/bufferstream.hpp>
 #include <cmath>
 #include <exception>
@@ -232,14 +233,18 @@ private:
             prefer_large_pages(plane.data(), to.voxels() * sizeof(float));
             plane.resize(to.voxels());
         });
+        std::atomic<bool> finite{true};
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& some) {
                               ValueDecoder decoder(format);
                               for (std::size_t b = some.begin(); b != some.end(); ++b) {
-                                  scatter(leaves[b], to.blocks[b].first, decoder, count,
-                                          to.planes.data() + first);
+                                  if (!scatter(leaves[b], to.blocks[b].first, decoder, count,
+                                               to.planes.data() + first)) {
+                                      finite = false;
+                                  }
                               }
                           });
+        if (!finite) throw BadTree{"has a value that is not finite"};
         m_file.forget(open.topology, stored.end);
     }
 
@@ -254,19 +259,20 @@ private:
         return blocks;
     }
 
-    /// Puts the active values of a leaf into rows of planes.
-    static void scatter(const StoredLeaf& leaf, std::uint64_t row, ValueDecoder& decoder,
+    /// Puts the active values of a leaf into rows of planes. Throws BadTree.
+    /// @return  whether all of them are finite
+    static bool scatter(const StoredLeaf& leaf, std::uint64_t row, ValueDecoder& decoder,
                         std::size_t components, std::vector<float>* planes) {
         std::array<float, 512 * 3> values;
         const bool has_all = leaf.values.has_inactive;
         const auto stored = has_all ? std::size_t{512} : std::size_t(leaf.active.count());
         if (!decoder.decode(leaf.values, stored, values.data())) throw BadTree{"is damaged"};
         std::size_t from = 0;
-        bool is_finite = true;
+        bool finite = true;
         const auto put = [&](std::size_t value) {
             for (std::size_t c = 0; c < components; ++c) {
                 const float v = values[value * components + c];
-                is_finite &= std::abs(v) <= std::numeric_limits<float>::max();
+                finite &= std::abs(v) <= std::numeric_limits<float>::max();
                 planes[c][row] = v;
             }
             ++row;
@@ -277,7 +283,7 @@ private:
         } else {
             while (from < stored) put(from++);
         }
-        if (!is_finite) throw BadTree{"has a value that is not finite"};
+        return finite;
     }
 
     std::string m_path;

@@ -166,8 +166,9 @@ ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int
     }
 }
 
-/// What a light alone makes, where that is a highlight and nothing else: 0 where the light is not
-/// near() and, since points follow each other as they are seen, nothing to do for most of them.
+/// What a light alone makes, where that is a highlight and nothing else: 0 where near_loop() marks
+/// nothing. Runs of points without a mark are not evaluated, and most are without: neighbours in a
+/// batch are so in the picture.
 template <class S>
 ESTARA_KERNEL void highlight_loop(const S shader, float cosine, const float* planes,
                                   const SeenBatch& seen, int first, int last,
@@ -184,11 +185,16 @@ ESTARA_KERNEL void highlight_loop(const S shader, float cosine, const float* pla
         const bool lit = any(begin);
         for (end += step; end < last && any(end) == lit;) end += step;
         end = std::min(end, last);
-        if (lit) view_loop<true>(shader, planes, seen, begin, end, Ci);
+        if (!lit) {
+            for (int c = 0; c < 3; ++c) {
+                std::fill(Ci + c * stride + begin, Ci + c * stride + end, 0.0f);
+            }
+            continue;
+        }
+        view_loop<true>(shader, planes, seen, begin, end, Ci);
         for (int c = 0; c < 3; ++c) {
             float* const plane = Ci + c * stride;
-            if (!lit) std::fill(plane + begin, plane + end, 0.0f);
-            for (int i = begin; lit && i < end; ++i) plane[i] = near[i] ? plane[i] : 0.0f;
+            for (int i = begin; i < end; ++i) plane[i] = near[i] ? plane[i] : 0.0f;
         }
     }
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "estara/grids/bricks.h"
 #include "estara/grids/vdb_sampler.h"
@@ -388,6 +389,28 @@ TEST(BrickPyramid, RefusesValuesThatAreNotFinite) {
     grid.levels[1].planes[3][5] = not_a_number;
     EXPECT_EQ(error_of([&] { BrickPyramid pyramid(grid); }),
               "texture grid: channel \"specular\" has a value on level 1 that is not finite");
+}
+
+TEST(BrickPyramid, FindsTheOneValueThatIsNotFinite) {
+    TextureGrid grid = complete_grid("", 0.02);
+    std::vector<float>& plane = grid.levels[0].planes[1];
+    ASSERT_GT(plane.size(), std::size_t{1} << 15);  // some pieces
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    constexpr float largest = std::numeric_limits<float>::max();
+    const std::string message =
+        "texture grid: channel \"color\" has a value on level 0 that is not finite";
+    for (const std::size_t row : {std::size_t{0}, plane.size() / 2, plane.size() - 1}) {
+        for (const float bad : {not_a_number, infinity, -infinity}) {
+            const float good = std::exchange(plane[row], bad);
+            EXPECT_EQ(error_of([&] { BrickPyramid pyramid(grid); }), message) << row << ' ' << bad;
+            plane[row] = good;
+        }
+    }
+    plane[3] = infinity;
+    plane.back() = -infinity;
+    EXPECT_EQ(error_of([&] { BrickPyramid pyramid(grid); }), message);
+    std::fill(plane.begin(), plane.end(), largest);
+    EXPECT_NO_THROW(BrickPyramid pyramid(grid));
 }
 
 }  // namespace

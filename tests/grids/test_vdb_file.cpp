@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <random>
+
 #include "estara/grids/texture_grid.h"
 #include "estara/grids/vdb_sampler.h"
 #include "example_grids.h"
@@ -39,6 +41,34 @@ TEST(VdbFile, GivesBackHalfFloatsThatWereRoundedBefore) {
     EXPECT_LT(half, full * 2 / 3);
     expect_same(read_vdb(folder.file("a.vdb"))[0], grid);
     expect_same(read_vdb(folder.file("rounded_by_writing.vdb"))[0], grid);
+}
+
+TEST(VdbFile, PacksWhatIsFlatAndLeavesNoiseAsItIs) {
+    const TemporaryFolder folder;
+    const auto size = [&](const TextureGrid& grid, Compression how) {
+        const std::uint64_t bytes = write_vdb(folder.file("a.vdb"), {grid}, {how, false});
+        expect_same(read_vdb(folder.file("a.vdb"))[0], grid);
+        return bytes;
+    };
+    TextureGrid flat = complete_grid(), noise = flat;
+    flat.distance.clear();  // which is never packed
+    noise.distance.clear();
+    std::minstd_rand random;
+    std::uint64_t leaves = 0;
+    for (std::size_t n = 0; n < flat.levels.size(); ++n) {
+        leaves += flat.levels[n].blocks.size() * flat.channels.size();
+        for (auto& plane : noise.levels[n].planes) {
+            for (float& value : plane) value = float(random());
+        }
+        for (auto& plane : flat.levels[n].planes) {
+            for (float& value : plane) value = value > 0.5f ? 0.75f : 0.25f;
+        }
+    }
+    EXPECT_LT(size(flat, Compression::zip), size(flat, Compression::none) / 4);
+    const std::uint64_t packed = size(noise, Compression::zip);
+    const std::uint64_t plain = size(noise, Compression::none);
+    EXPECT_GT(packed, plain);
+    EXPECT_LT(packed, plain + 16 * leaves);  // a leaf's size, and a few nodes'
 }
 
 TEST(VdbFile, HoldsSeveralObjects) {

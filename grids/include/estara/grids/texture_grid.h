@@ -149,7 +149,8 @@ std::uint64_t write_vdb(const std::string& path, const std::vector<TextureGrid>&
 
 /// Reads what write_vdb() wrote, by object and shader in the order of their names. `distance` and
 /// `cells` are not read.
-/// Error: not a .vdb, truncated, not made by estara-bake, missing level or channel.
+/// Error: not a .vdb, truncated, damaged, not made by estara-bake, missing level or channel, a
+/// value that is not finite. In parallel.
 std::vector<TextureGrid> read_vdb(const std::string& path);
 
 }  // namespace estara

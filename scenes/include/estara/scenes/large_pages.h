@@ -18,7 +18,8 @@ inline void prefer_large_pages(void* memory, std::size_t bytes) noexcept {
     const auto start = reinterpret_cast<std::uintptr_t>(memory);
     const std::uintptr_t from = (start + large_page - 1) / large_page * large_page;
     const std::uintptr_t to = (start + bytes) / large_page * large_page;
-    if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
+    if (from >= to) return;
+    madvise(static_cast<char*>(memory) + (from - start), to - from, MADV_HUGEPAGE);
 }
 
 struct FreeMemory {

@@ -18,7 +18,7 @@
 //     bool    layered() const noexcept;             see BoundShader::layered(); default: false
 //     bool    glossy() const noexcept;              see BoundShader::glossy(); default: true
 //     float   highlight_cosine() const noexcept;    N.H below which a light alone shows nothing
-//                                                   (lobes.h, highlight_edge()): not evaluated
+//                                                   (lobes.h, highlight_edge()): taken as 0
 //     bool    perturbs_normal() const noexcept;     whether its normal channel, the last one, is
 //                                                   used with these parameters; default: true
 #pragma once
