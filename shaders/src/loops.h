@@ -170,12 +170,11 @@ ESTARA_KERNEL void near_loop(float cosine, const SeenBatch& seen, int first, int
 /// nothing. Runs of points without a mark are not evaluated, and most are without: neighbours in a
 /// batch are so in the picture.
 template <class S>
-ESTARA_KERNEL void highlight_loop(const S shader, float cosine, const float* planes,
-                                  const SeenBatch& seen, int first, int last,
-                                  float* __restrict Ci) noexcept {
+ESTARA_KERNEL void highlight_loop(const S shader, const float* planes, const SeenBatch& seen,
+                                  int first, int last, float* __restrict Ci) noexcept {
     constexpr int stride = SeenBatch::capacity, step = 16;
     alignas(64) std::uint8_t near[SeenBatch::capacity + step] = {};
-    near_loop(cosine, seen, first, last, near);
+    near_loop(shader.highlight_cosine(), seen, first, last, near);
     const auto any = [&near](int begin) {
         std::uint64_t flags[step / 8];
         std::memcpy(flags, near + begin, step);
@@ -216,19 +215,15 @@ template <class S>
 void Loops<S>::view(const S& shader, const float* planes, const SeenBatch& seen, int first,
                     int last, bool lit, float* Ci, InstructionSet limit) noexcept {
     if (lit) {
-        if constexpr (HasHighlight<S>) {
-            // Where highlights are broad, looking for them costs what it saves (measured).
-            const float cosine = shader.highlight_cosine();
-            if (cosine > 0.7f) {
-                return wide(
-                    [=, &seen]() ESTARA_LOOP {
-                        highlight_loop(shader, cosine, planes, seen, first, last, Ci);
-                    },
-                    limit);
-            }
-        }
-        wide([=, &seen]() ESTARA_LOOP { view_loop<true>(shader, planes, seen, first, last, Ci); },
-             limit);
+        wide(
+            [=, &seen]() ESTARA_LOOP {
+                if constexpr (HasHighlight<S>) {
+                    highlight_loop(shader, planes, seen, first, last, Ci);
+                } else {
+                    view_loop<true>(shader, planes, seen, first, last, Ci);
+                }
+            },
+            limit);
     } else {
         wide([=, &seen]() ESTARA_LOOP { view_loop<false>(shader, planes, seen, first, last, Ci); },
              limit);
