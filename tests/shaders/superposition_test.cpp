@@ -93,8 +93,9 @@ void expect_all_highlights() {
             }
         }
     }
-    // Something has been left out.
-    if constexpr (HasHighlight<S>) EXPECT_GT(largest, 0.0f) << S::name;
+    if constexpr (HasHighlight<S>) {
+        EXPECT_GT(largest, 0.0f) << S::name << ": nothing has been left out";
+    }
 }
 
 template <class... S>
