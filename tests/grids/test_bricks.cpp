@@ -395,7 +395,6 @@ TEST(BrickPyramid, FindsTheOneValueThatIsNotFinite) {
     TextureGrid grid = complete_grid("", 0.02);
     std::vector<float>& plane = grid.levels[0].planes[1];
     ASSERT_GT(plane.size(), std::size_t{1} << 15);  // some pieces
-    constexpr float infinity = std::numeric_limits<float>::infinity();
     constexpr float largest = std::numeric_limits<float>::max();
     const std::string message =
         "texture grid: channel \"color\" has a value on level 0 that is not finite";
