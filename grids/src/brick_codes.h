@@ -53,19 +53,11 @@ constexpr std::array<CodeField, 4> code_fields(int floats) noexcept {
 /// mask), the power of two being part of the scale. A field that reaches the sign bit is stored
 /// with that bit flipped, so that the signed word is code - half, and half is part of the offset.
 struct BrickPart {
-    int first, floats;                     ///< floats of the record: [first, first + floats)
-    std::size_t offset;                    ///< words before it in its brick
-    std::array<std::uint32_t, 8> masks{};  ///< of floats 0 0 1 1 2 2 3 3, 0 for one not there
+    int first, floats;   ///< floats of the record: [first, first + floats)
+    std::size_t offset;  ///< words before it in its brick
 
     static constexpr std::size_t words(int floats) noexcept {
         return 2 * std::size_t(floats) + brick_voxels;
-    }
-
-    BrickPart(int first_float, int number_of_floats, std::size_t offset_in_brick) noexcept
-        : first(first_float), floats(number_of_floats), offset(offset_in_brick) {
-        for (std::size_t c = 0; c < std::size_t(floats); ++c) {
-            masks[2 * c] = masks[2 * c + 1] = code_fields(floats)[c].mask();
-        }
     }
 
     std::size_t header() const noexcept { return std::size_t(2 * floats); }  ///< words before codes
@@ -133,44 +125,60 @@ ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* 
     }
 }
 
-/// Trilinear value of a cell: up to four floats, what is beyond them has no meaning.
-/// @param part  the words of the part of the brick
-/// @param cell  place of the cell's first voxel in the brick
-/// @param xy    weights of the voxels (0, 0), (0, 1), (1, 0), (1, 1) along x and y
-/// @param z     weights of the voxels 0, 1 along z
-ESTARA_KERNEL Floats4 interpolate(const BrickPart& layout, const std::uint32_t* part,
-                                  std::size_t cell, const std::array<float, 4>& xy,
-                                  const std::array<float, 2>& z) noexcept {
-    const std::uint32_t* const voxel = part + layout.header() + cell;
-    Ints8 masks;
-    std::memcpy(&masks, layout.masks.data(), sizeof masks);
-    // Two voxels along z at once: lanes z z+1 z z+1 ..., the mask takes float 0 0 1 1 2 2 3 3.
-    // (No function returns such a vector: without AVX the calling convention has none.)
-    const auto load = [&](std::uint32_t x, std::uint32_t y, Floats8& codes) {
-        std::uint64_t two;
-        std::memcpy(&two, voxel + in_brick(x, y, 0), sizeof two);
-        const Words4 copies = Words4{} + two;
-        Ints8 words;
-        std::memcpy(&words, &copies, sizeof words);
-        codes = __builtin_convertvector(words & masks, Floats8);
+/// Trilinear values of four cells, each in a brick of its own.
+/// @param part   where the part begins in each brick
+/// @param cell   place of each cell's first voxel in its brick
+/// @param x,y,z  how far each point is from that voxel to the next one, [0, 1]
+/// @param value  one for every float: of the four points
+template <int floats>
+ESTARA_KERNEL void interpolate_cells(const std::array<const std::uint32_t*, 4>& part,
+                                     const std::array<std::uint32_t, 4>& cell, const Floats4& x,
+                                     const Floats4& y, const Floats4& z, Floats4* value) noexcept {
+    constexpr std::array<CodeField, 4> fields = code_fields(floats);
+    // Two voxels along z and four points side by side: lanes are the voxels z, z + 1 of the first
+    // point, of the second, ... (No function returns such a vector: without AVX the calling
+    // convention has none.)
+    const auto load = [&](std::uint32_t voxel_x, std::uint32_t voxel_y, Ints8& words) {
+        std::array<std::uint64_t, 4> two;
+        for (std::size_t i = 0; i < 4; ++i) {
+            std::memcpy(&two[i], part[i] + 2 * floats + cell[i] + in_brick(voxel_x, voxel_y, 0),
+                        sizeof two[i]);
+        }
+        const Words4 side_by_side{two[0], two[1], two[2], two[3]};
+        std::memcpy(&words, &side_by_side, sizeof words);
     };
-    Floats8 c00, c01, c10, c11;
-    load(0, 0, c00);
-    load(0, 1, c01);
-    load(1, 0, c10);
-    load(1, 1, c11);
-    const Words4 z_copies = Words4{} + std::bit_cast<std::uint64_t>(z);
-    Floats8 z_weights;
-    std::memcpy(&z_weights, &z_copies, sizeof z_weights);
-    const Floats8 c = ((xy[0] * c00 + xy[1] * c01) + (xy[2] * c10 + xy[3] * c11)) * z_weights;
-    Floats4 half[2];
-    std::memcpy(half, &c, sizeof half);
-    const Floats4 sum = __builtin_shufflevector(half[0], half[1], 0, 2, 4, 6) +
-                        __builtin_shufflevector(half[0], half[1], 1, 3, 5, 7);
-    Floats4 offset, scale;
-    std::memcpy(&offset, part, sizeof offset);
-    std::memcpy(&scale, part + layout.floats, sizeof scale);
-    return offset + scale * sum;
+    Ints8 w00, w01, w10, w11;
+    load(0, 0, w00);
+    load(0, 1, w01);
+    load(1, 0, w10);
+    load(1, 1, w11);
+    const Floats8 far_x = __builtin_shufflevector(x, x, 0, 0, 1, 1, 2, 2, 3, 3),
+                  far_y = __builtin_shufflevector(y, y, 0, 0, 1, 1, 2, 2, 3, 3);
+    const Floats8 near_x = 1.0f - far_x, near_y = 1.0f - far_y;
+    const Floats8 c00 = near_x * near_y, c01 = near_x * far_y, c10 = far_x * near_y,
+                  c11 = far_x * far_y;
+    const Floats4 near_z = 1.0f - z;
+    const Floats8 along_z = __builtin_shufflevector(near_z, z, 0, 4, 1, 5, 2, 6, 3, 7);
+    for (std::size_t c = 0; c < std::size_t(floats); ++c) {
+        const auto mask = std::int32_t(fields[c].mask());
+        const auto codes = [&](const Ints8& words, Floats8& codes_of_c) {
+            codes_of_c = __builtin_convertvector(words & mask, Floats8);
+        };
+        Floats8 v00, v01, v10, v11;
+        codes(w00, v00);
+        codes(w01, v01);
+        codes(w10, v10);
+        codes(w11, v11);
+        const Floats8 sum = ((c00 * v00 + c01 * v01) + (c10 * v10 + c11 * v11)) * along_z;
+        const Floats4 blended = __builtin_shufflevector(sum, sum, 0, 2, 4, 6) +
+                                __builtin_shufflevector(sum, sum, 1, 3, 5, 7);
+        Floats4 offset, scale;
+        for (int i = 0; i < 4; ++i) {
+            std::memcpy(&offset[i], part[std::size_t(i)] + c, sizeof(float));
+            std::memcpy(&scale[i], part[std::size_t(i)] + floats + c, sizeof(float));
+        }
+        value[c] = offset + scale * blended;
+    }
 }
 
 }  // namespace estara

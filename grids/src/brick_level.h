@@ -17,11 +17,12 @@ namespace estara {
 
 /// An index coordinate that may be anything, between -1 (NaN too) and 2^30, and so outside of every
 /// level where it was; its floor fits an int.
-inline double within_int(double index) noexcept {
-    constexpr double nearest = -1.0, farthest = 1 << 30;
-    const double above = index > nearest ? index : nearest;
-    return above < farthest ? above : farthest;
+inline double not_below(double index) noexcept { return index > -1.0 ? index : -1.0; }
+inline double not_above(double index) noexcept {
+    constexpr double farthest = 1 << 30;
+    return index < farthest ? index : farthest;
 }
+inline double within_int(double index) noexcept { return not_above(not_below(index)); }
 
 struct BrickLevel {
     BrickIndex index;

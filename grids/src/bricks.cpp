@@ -67,8 +67,8 @@ BrickPyramid::BrickPyramid(const TextureGrid& grid, const std::span<const glm::v
     }
     const std::vector<float> means = finite_means(grid, title(grid));
     const int half = m_floats > 4 ? (m_floats + 1) / 2 : m_floats;
-    m_parts.emplace_back(0, half, 0);
-    if (half < m_floats) m_parts.emplace_back(half, m_floats - half, BrickPart::words(half));
+    m_parts.push_back({0, half, 0});
+    if (half < m_floats) m_parts.push_back({half, m_floats - half, BrickPart::words(half)});
 
     std::vector<glm::ivec3> cells;
     if (only != nullptr) {
@@ -117,13 +117,20 @@ struct BrickPyramid::Batch {
 
 namespace {
 
+/// Points that are interpolated at once.
+constexpr std::size_t lanes = 4;
+
+constexpr std::size_t whole_lanes(std::size_t points) {
+    return (points + lanes - 1) / lanes * lanes;
+}
+
 /// Where the values of up to n points are, each on a level of its own.
 template <std::size_t n>
 struct Taps {
-    std::array<const std::uint32_t*, n> brick;
-    std::array<std::uint32_t, n> cell;       ///< place of the cell's first voxel
-    std::array<std::array<float, 4>, n> xy;  ///< weights, as interpolate() takes them
-    std::array<std::array<float, 2>, n> z;
+    static constexpr std::size_t size = whole_lanes(n);
+    std::array<const std::uint32_t*, size> brick;
+    std::array<std::uint32_t, size> cell;  ///< place of the cell's first voxel
+    ByAxis<std::array<float, size>> far;   ///< from that voxel to the next, [0, 1]
 };
 
 /// How object space becomes a level's index space.
@@ -139,27 +146,23 @@ ESTARA_KERNEL void locate(const BrickLevel& level, const ToIndex& to_index,
                           const ByAxis<const float*>& P, std::size_t begin, std::size_t end,
                           const std::uint32_t* miss, Taps<n>& taps) noexcept {
     ByAxis<std::array<std::int32_t, n>> voxel;
-    ByAxis<std::array<float, n>> far;  // weights of the farther voxels
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const float* const p = P[axis];
         const double origin = to_index.origin[int(axis)], per_voxel = to_index.per_voxel;
-        // Step by step: in one loop the compiler would choose between limits as integers as well.
+        // Step by step: in one loop the compiler would make six comparisons of the two limits, and
+        // choose between them as integers as well.
         std::array<double, n> index, whole;
         for (std::size_t i = begin; i < end; ++i) {
-            index[i] = within_int((double(p[i]) - origin) * per_voxel);
+            index[i] = not_below((double(p[i]) - origin) * per_voxel);
         }
+        for (std::size_t i = begin; i < end; ++i) index[i] = not_above(index[i]);
         for (std::size_t i = begin; i < end; ++i) {
             whole[i] = std::floor(index[i]);
-            far[axis][i] = float(index[i] - whole[i]);
+            taps.far[axis][i] = float(index[i] - whole[i]);
         }
         for (std::size_t i = begin; i < end; ++i) voxel[axis][i] = std::int32_t(whole[i]);
     }
     std::array<std::uint32_t, n> root, middle, bottom, bit;
-    for (std::size_t i = begin; i < end; ++i) {
-        const float x = far[0][i], y = far[1][i], z = far[2][i];
-        taps.xy[i] = {(1.0f - x) * (1.0f - y), (1.0f - x) * y, x * (1.0f - y), x * y};
-        taps.z[i] = {1.0f - z, z};
-    }
     const BrickIndex::Box box = level.index.box();
     for (std::size_t i = begin; i < end; ++i) {
         const auto x = std::uint32_t(voxel[0][i]), y = std::uint32_t(voxel[1][i]),
@@ -180,10 +183,50 @@ ESTARA_KERNEL void locate(const BrickLevel& level, const ToIndex& to_index,
     }
 }
 
-template <std::size_t n>
-ESTARA_KERNEL Floats4 interpolate(const BrickPart& part, const Taps<n>& taps,
-                                  std::size_t i) noexcept {
-    return interpolate(part, taps.brick[i] + part.offset, taps.cell[i], taps.xy[i], taps.z[i]);
+/// A part's floats of four points, all on one level.
+template <int floats, std::size_t n>
+ESTARA_KERNEL void interpolate(std::size_t offset, const Taps<n>& taps, std::size_t first,
+                               Floats4* value) noexcept {
+    std::array<const std::uint32_t*, lanes> part;
+    std::array<std::uint32_t, lanes> cell;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        part[i] = taps.brick[first + i] + offset;
+        cell[i] = taps.cell[first + i];
+    }
+    ByAxis<Floats4> far;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::memcpy(&far[axis], taps.far[axis].data() + first, sizeof far[axis]);
+    }
+    interpolate_cells<floats>(part, cell, far[0], far[1], far[2], value);
+}
+
+/// A part's floats of all points.
+/// @param coarse  read where weight is not 0
+/// @param planes  of the part's first float
+template <int floats, std::size_t n>
+ESTARA_KERNEL void interpolate(std::size_t offset, const Taps<n>& fine, const Taps<n>& coarse,
+                               const std::array<float, Taps<n>::size>& weight, std::size_t count,
+                               float* planes, std::size_t stride) noexcept {
+    for (std::size_t first = 0; first < count; first += lanes) {
+        Floats4 value[floats];
+        interpolate<floats>(offset, fine, first, value);
+        std::array<std::uint64_t, 2> any;
+        std::memcpy(&any, weight.data() + first, sizeof any);
+        if ((any[0] | any[1]) != 0) {
+            Floats4 far_value[floats], w;
+            interpolate<floats>(offset, coarse, first, far_value);
+            std::memcpy(&w, weight.data() + first, sizeof w);
+            for (int c = 0; c < floats; ++c) value[c] += (far_value[c] - value[c]) * w;
+        }
+        for (std::size_t c = 0; c < std::size_t(floats); ++c) {
+            float* const plane = planes + c * stride + first;
+            if (count - first >= lanes) {
+                std::memcpy(plane, &value[c], sizeof value[c]);
+            } else {
+                for (std::size_t i = 0; i < count - first; ++i) plane[i] = value[c][int(i)];
+            }
+        }
+    }
 }
 
 /// All points: those that follow each other on the same level together.
@@ -197,6 +240,12 @@ ESTARA_KERNEL void locate(const std::vector<BrickLevel>& levels, const ToIndex& 
         const double scale = std::bit_cast<float>((127 - level[begin]) << 23);  // 2^-level
         const ToIndex to_index{finest.origin, finest.per_voxel * scale};
         locate(levels[std::size_t(level[begin])], to_index, P, begin, end, miss, taps);
+    }
+    // The lanes that are left over see nothing.
+    for (std::size_t i = count; i < whole_lanes(count); ++i) {
+        taps.brick[i] = miss;
+        taps.cell[i] = 0;
+        for (std::array<float, Taps<n>::size>& far : taps.far) far[i] = 0.0f;
     }
     for (const BrickPart& part : parts) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -221,7 +270,7 @@ ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
     const auto last = float(pyramid.m_levels.size() - 1);
     const std::uint32_t* const miss = pyramid.m_miss.data();
     std::array<std::int32_t, n> level;
-    std::array<float, n> weight;
+    std::array<float, Taps<n>::size> weight;
     Taps<n> fine, coarse;
     for (std::size_t first = 0; first < batch.size; first += n) {
         const std::size_t count = std::min(n, batch.size - first);
@@ -244,6 +293,7 @@ ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
             weight[i] -= float(level[i]);
             blend |= weight[i] > 0.0f;
         }
+        for (std::size_t i = count; i < whole_lanes(count); ++i) weight[i] = 0.0f;
         locate(pyramid.m_levels, finest, level, P, count, miss, pyramid.m_parts, fine);
         std::array<std::uint8_t, n> found;  // (bytes that batch points to may alias anything)
         for (std::size_t i = 0; i < count; ++i) found[i] = fine.brick[i] != miss;
@@ -258,16 +308,23 @@ ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
             }
         }
         for (const BrickPart& part : pyramid.m_parts) {
-            std::array<Floats4, n> value;
-            for (std::size_t i = 0; i < count; ++i) value[i] = interpolate(part, fine, i);
-            if (blend) {
-                for (std::size_t i = 0; i < count; ++i) {
-                    value[i] += (interpolate(part, coarse, i) - value[i]) * weight[i];
-                }
-            }
-            for (int c = 0; c < part.floats; ++c) {
-                float* const plane = batch.planes + std::size_t(part.first + c) * batch.stride;
-                for (std::size_t i = 0; i < count; ++i) plane[first + i] = value[i][c];
+            const auto interpolate_part = [&]<int floats>() ESTARA_LOOP {
+                interpolate<floats>(part.offset, fine, coarse, weight, count,
+                                    batch.planes + std::size_t(part.first) * batch.stride + first,
+                                    batch.stride);
+            };
+            switch (part.floats) {
+                case 1:
+                    interpolate_part.template operator()<1>();
+                    break;
+                case 2:
+                    interpolate_part.template operator()<2>();
+                    break;
+                case 3:
+                    interpolate_part.template operator()<3>();
+                    break;
+                default:
+                    interpolate_part.template operator()<4>();
             }
         }
     }
