@@ -177,6 +177,7 @@ int GlbBuilder::add_camera(const std::string& name, double yfov, const Placement
     camera.perspective.yfov = yfov;
     camera.perspective.aspectRatio = 16.0 / 9.0;
     camera.perspective.znear = 0.01;
+    camera.perspective.zfar = 1000.0;  // written as 0 if left out, which other readers believe
     model.cameras.push_back(camera);
     const int node = add_node(name, placement);
     model.nodes[node].camera = int(model.cameras.size()) - 1;

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <string>
@@ -63,6 +65,16 @@ Scene example(const std::string& name) {
     EXPECT_EQ(outcome.status, 0) << outcome.text;
     EXPECT_EQ(outcome.text, "");
     return load_scene(path);
+}
+
+/// The JSON of a .glb file, its first chunk.
+nlohmann::json json_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::uint32_t size = 0;
+    file.seekg(12).read(reinterpret_cast<char*>(&size), sizeof size);
+    std::string text(size, '\0');
+    file.seekg(20).read(text.data(), std::streamsize(size));
+    return nlohmann::json::parse(text);
 }
 
 /// Vertices in one place are one corner.
@@ -136,6 +148,15 @@ std::pair<double, std::set<int>> seen(const Scene& scene, RayScene& rays, double
             objects.insert(scene.instances[hit.instance].object);
         }
     return {double(count) / (width * height), objects};
+}
+
+TEST(Examples, CamerasSeeFarInOtherProgramsToo) {
+    const Folder folder;
+    const std::string path = folder / "simple.glb";
+    ASSERT_EQ(estara_scenes("simple -o " + path).status, 0);
+    const nlohmann::json lens = json_of(path).at("cameras").at(0).at("perspective");
+    EXPECT_GT(lens.at("znear"), 0.0);
+    EXPECT_GT(lens.at("zfar"), 100.0);
 }
 
 TEST(StillLife, WearsAllFourShadersOnManySmoothObjects) {
