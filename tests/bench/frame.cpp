@@ -6,21 +6,17 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "estara/bake/bake.h"
 #include "estara/render/compare.h"
-#include "estara/scenes/load.h"
-#include "meshes.h"
 #include "raster.h"
 #include "rounds.h"
 #include "rows.h"
-#include "run_command.h"
+#include "still_life.h"
 
 namespace estara::bench {
 namespace {
 
 constexpr Raster raster{1280, 720};
 constexpr int round_count = 11;
-constexpr double max_voxels = 4e6;  ///< of an object
 /// RMSE of grids against direct evaluation; tests/README.md, "Image error".
 constexpr double allowed_rmse = 0.01;
 
@@ -31,36 +27,6 @@ FrameSettings frame_settings() {
     settings.spp = 1;
     settings.shadows = false;
     return settings;
-}
-
-/// The still life with every object in greenmarble and only its key light.
-Scene marble_scene(const std::filesystem::path& folder) {
-    const std::string path = folder / "still-life.glb";
-    run_command("estara-scenes still-life -o '" + path + "'");
-    Scene scene = load_scene(path);
-    scene.lights.resize(1);
-    for (Object& object : scene.objects) {
-        object.choice = {"greenmarble", {}, "benchmark"};
-        object.shader = bind_choice(object.choice, object.mesh.has_uv());
-    }
-    return scene;
-}
-
-/// Every object baked with the voxels that estara-bake would choose, or with larger ones where that
-/// would be more than max_voxels: the backdrop alone would be 330 million.
-std::vector<ObjectShading> baked(const Scene& scene, RayScene& rays) {
-    const double fps = 24.0;
-    const std::vector<double> sizes = automatic_voxel_sizes(
-        scene, rays, 0, animated_frames(scene, fps), fps, raster.width, raster.height);
-    std::vector<ObjectShading> shading;
-    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-        const Mesh& mesh = scene.objects[i].mesh;
-        const BoundShaderPtr& shader = scene.objects[i].shader;
-        const double size = std::max(sizes[i], voxel_size_for(mesh, *shader, max_voxels));
-        auto pyramid = std::make_shared<BrickPyramid>(bake_mesh(mesh, *shader, size, false));
-        shading.push_back({shader, std::move(pyramid), float(size), nullptr});
-    }
-    return shading;
 }
 
 /// The primary rays of a frame and nothing else.
@@ -77,11 +43,11 @@ void trace_all(const Camera& camera, const RayScene& rays) {
 
 void frame(Bench& bench) {
     Rows& rows = bench.rows;
-    const Scene scene = marble_scene(bench.folder);
+    Scene scene = still_life_in({"greenmarble", {}, "benchmark"}, bench.folder);
+    scene.lights.resize(1);  // its key light
     RayScene ray_scene(scene);
-    const std::vector<ObjectShading> grids = baked(scene, ray_scene);
-    std::vector<ObjectShading> direct = grids;
-    for (ObjectShading& shading : direct) shading.pyramid = nullptr;
+    const std::vector<ObjectShading> grids = baked(scene, ray_scene, raster.width, raster.height);
+    const std::vector<ObjectShading> evaluated = direct(grids);
 
     const FrameSettings settings = frame_settings();
     FrameRenderer renderer(scene, ray_scene, settings);
@@ -92,7 +58,7 @@ void frame(Bench& bench) {
                         raster.height);
     const auto costs =
         rounds(round_count, {[&] { counts = renderer.render(grids, 0, 0.0, grid_film, {}); },
-                             [&] { renderer.render(direct, 0, 0.0, direct_film, {}); },
+                             [&] { renderer.render(evaluated, 0, 0.0, direct_film, {}); },
                              [&] { trace_all(camera, ray_scene); }});
 
     const double rmse = compare_films(grid_film, direct_film).rmse;

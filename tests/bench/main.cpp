@@ -14,9 +14,13 @@ struct Group {
     const char* name;
     void (*run)(Bench&);
 };
-constexpr Group groups[]{{"lookup", bench::lookup}, {"shaders", bench::shaders},
-                         {"frame", bench::frame},   {"bake", bench::bake},
-                         {"load", bench::load},     {"large", bench::large}};
+constexpr Group groups[]{{"lookup", bench::lookup},      {"shaders", bench::shaders},
+                         {"frame", bench::frame},        {"bake", bench::bake},
+                         {"load", bench::load},          {"large", bench::large},
+                         {"renderers", bench::renderers}};
+
+/// Run only where it is named.
+bool is_extra(const std::string& name) { return name == "large" || name == "renderers"; }
 
 struct Options {
     std::vector<std::string> names;
@@ -27,7 +31,7 @@ struct Options {
 
 bool is_wanted(const Options& options, const std::string& name) {
     if (name == "large" && options.large) return true;
-    if (options.names.empty()) return name != "large";
+    if (options.names.empty()) return !is_extra(name);
     return std::find(options.names.begin(), options.names.end(), name) != options.names.end();
 }
 
@@ -58,7 +62,7 @@ int main_of(int argc, char** argv) {
     CLI::App app{"Measures estara, and writes bench.json and bench.md."};
     std::vector<std::string> names;
     for (const Group& group : groups) names.emplace_back(group.name);
-    app.add_option("NAME", options.names, "groups to run; none: all but large")
+    app.add_option("NAME", options.names, "groups to run; none: all but large and renderers")
         ->check(CLI::IsMember(names));
     app.add_flag("--large", options.large, "the group large too: minutes, and up to 20 GiB");
     app.add_option("--large-voxels", options.large_voxels, "voxels of the large bake")

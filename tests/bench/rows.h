@@ -55,5 +55,6 @@ void frame(Bench& bench);
 void bake(Bench& bench);
 void load(Bench& bench);
 void large(Bench& bench);
+void renderers(Bench& bench);
 
 }  // namespace estara::bench
