@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "blocks.h"
 #include "brick_level.h"
@@ -30,16 +31,32 @@ std::string title(const TextureGrid& grid) {
 /// samples in four then need one level only.
 constexpr float blend_width = 0.25f;
 
-ESTARA_KERNEL float fractional_level(float footprint, float voxel_size, float last,
-                                     float bias) noexcept {
+/// BrickPyramid::level_for(): log2(footprint / voxel size) + level_bias, steepened, [0, last].
+///
+/// Of the logarithm's fraction only the middle is more than 0 or 1: there it is the series around
+/// a mantissa of sqrt(2), 1e-8 off, and needs no division.
+/// @param scale  level_scale()
+ESTARA_KERNEL float fractional_level(float footprint, float scale, float last) noexcept {
+    constexpr float middle = std::numbers::sqrt2_v<float>, per_ln2 = std::numbers::log2e_v<float>;
+    constexpr float steepness = per_ln2 / blend_width;
+    const auto bits = std::bit_cast<std::uint32_t>((footprint > 0.0f ? footprint : 0.0f) * scale);
+    const auto whole = float(int(bits >> 23) - 127);
+    const float mantissa = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u);
+    const float x = (mantissa - middle) * (1.0f / middle);
+    const float ln =
+        ((((0.2f - x * (1.0f / 6.0f)) * x - 0.25f) * x + 1.0f / 3.0f) * x - 0.5f) * x * x + x;
+    const float blend = steepness * ln + 0.5f;
     // Limits one by one, without a branch that would keep the loop from being made wide.
-    const float exact = log2_kernel((footprint > 0.0f ? footprint : 0.0f) / voxel_size) + bias;
-    const float positive = exact > 0.0f ? exact : 0.0f;
-    const float within = positive < last ? positive : last;
-    const float whole = float(std::int32_t(within));
-    const float blend = (within - whole - 0.5f * (1.0f - blend_width)) * (1.0f / blend_width);
-    const float above = blend > 0.0f ? blend : 0.0f;
-    return whole + (above < 1.0f ? above : 1.0f);
+    const float level = whole + blend, next = whole + 1.0f;
+    const float above = level > whole ? level : whole;
+    const float within = above < next ? above : next;
+    const float positive = within > 0.0f ? within : 0.0f;
+    return positive < last ? positive : last;
+}
+
+/// What a footprint is multiplied by to get 2^level.
+float level_scale(double voxel_size) noexcept {
+    return float(std::exp2(double(BrickPyramid::level_bias)) / voxel_size);
 }
 
 }  // namespace
@@ -266,7 +283,7 @@ template <std::size_t n>
 ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
                                               const Batch& batch) noexcept {
     const ToIndex finest{pyramid.m_origin, 1.0 / pyramid.m_voxel_size};
-    const auto voxel_size = float(pyramid.m_voxel_size);
+    const float scale = level_scale(pyramid.m_voxel_size);
     const auto last = float(pyramid.m_levels.size() - 1);
     const std::uint32_t* const miss = pyramid.m_miss.data();
     std::array<std::int32_t, n> level;
@@ -284,7 +301,7 @@ ESTARA_KERNEL void BrickPyramid::lookup_batch(const BrickPyramid& pyramid,
         } else {
             const float* const footprints = batch.footprints + first;
             for (std::size_t i = 0; i < count; ++i) {
-                weight[i] = fractional_level(footprints[i], voxel_size, last, level_bias);
+                weight[i] = fractional_level(footprints[i], scale, last);
             }
         }
         std::int32_t blend = 0;
@@ -378,7 +395,7 @@ void BrickPyramid::lookup(std::span<const glm::vec3> P, std::span<const float> f
 }
 
 float BrickPyramid::level_for(float footprint) const noexcept {
-    return fractional_level(footprint, float(m_voxel_size), float(levels() - 1), level_bias);
+    return fractional_level(footprint, level_scale(m_voxel_size), float(levels() - 1));
 }
 
 }  // namespace estara

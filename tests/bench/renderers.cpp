@@ -186,8 +186,8 @@ enum Pattern { constant, procedural };
 /// A renderer that is a program of its own: its seconds, and its last picture in a constant colour.
 struct Peer {
     const char* name;
-    const char* patterns;  ///< in words
-    std::array<std::vector<double>, 2> seconds;
+    std::array<const char*, 2> patterns;  ///< in words
+    std::array<std::vector<double>, 2> seconds{};
     Film film{width, height, {}};
 };
 
@@ -264,28 +264,11 @@ private:
     int m_threads;
 };
 
-/// The still life in one shader, rendered by us.
-class Ours {
-public:
-    Ours(const ShaderChoice& choice, const std::filesystem::path& folder)
-        : scene(still_life_in(choice, folder)),
-          m_rays(scene),
-          m_renderer(scene, m_rays, settings()) {}
+/// The still life in one shader.
+struct Dressed {
+    Dressed(const ShaderChoice& choice, const std::filesystem::path& folder)
+        : scene(still_life_in(choice, folder)), rays(scene), renderer(scene, rays, settings()) {}
 
-    std::vector<ObjectShading> grids() { return baked(scene, m_rays, width, height); }
-    std::vector<ObjectShading> evaluated() const {
-        std::vector<ObjectShading> shading;
-        for (const Object& object : scene.objects) shading.push_back({object.shader, nullptr});
-        return shading;
-    }
-
-    double render(const std::vector<ObjectShading>& shading, Film& film) {
-        return m_renderer.render(shading, 0, 0.0, film, {}).seconds;
-    }
-
-    const Scene scene;
-
-private:
     static FrameSettings settings() {
         FrameSettings settings;
         settings.width = width;
@@ -294,15 +277,40 @@ private:
         return settings;
     }
 
-    RayScene m_rays;
-    FrameRenderer m_renderer;
+    const Scene scene;
+    RayScene rays;
+    FrameRenderer renderer;
 };
+
+/// A way in which we render it: its seconds, and its last picture.
+struct Ours {
+    const char* name;
+    std::string what;
+    Dressed& dressed;
+    std::vector<ObjectShading> shading;
+    std::vector<double> seconds{};
+    Film film{width, height, {}};
+
+    /// Beside the pictures that are evaluated.
+    std::string error(const Ours& evaluated) const {
+        if (this == &evaluated) return "exact";
+        return fmt::format("rmse {:.2g}", compare_films(film, evaluated.film).rmse);
+    }
+
+    void run() { seconds.push_back(dressed.renderer.render(shading, 0, 0.0, film, {}).seconds); }
+};
+
+Spread over(const std::vector<double>& ours, const std::vector<double>& theirs) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / theirs[i]);
+    return spread(std::move(ratios));
+}
 
 }  // namespace
 
 void renderers(Bench& bench) {
     for (const char* program : {"blender", "povray"}) {
-        if (!command_succeeds(fmt::format("command -v {} >/dev/null", program))) {
+        if (!command_succeeds(fmt::format("command -v {} >/dev/null 2>&1", program))) {
             return bench.rows.missing(
                 fmt::format("renderers: there is no {0}: install Debian's package {0}, or ./run "
                             "bench renderers",
@@ -310,58 +318,68 @@ void renderers(Bench& bench) {
         }
     }
     const int threads = tbb::this_task_arena::max_concurrency();
-    Ours plain({"plastic",
-                {{"Cs", {albedo, albedo, albedo}}, {"Kd", {1.0f}}, {"Ks", {0.0f}}},
-                "benchmark"},
-               bench.folder);
-    Ours marble({"greenmarble", {}, "benchmark"}, bench.folder);
-    const std::vector<ObjectShading> color = plain.evaluated(), grids = marble.grids(),
-                                     evaluated = direct(grids);
+    Dressed plain({"plastic",
+                   {{"Cs", {albedo, albedo, albedo}}, {"Kd", {1.0f}}, {"Ks", {0.0f}}},
+                   "benchmark"},
+                  bench.folder);
+    Dressed marble({"greenmarble", {}, "benchmark"}, bench.folder);
+    const std::vector<ObjectShading> grids = baked(marble.scene, marble.rays, width, height),
+                                     lit = with_light(grids, marble.scene, marble.rays);
+    std::vector<ObjectShading> plain_lit = direct(lit);
+    for (std::size_t i = 0; i < plain_lit.size(); ++i) {
+        plain_lit[i].shader = plain.scene.objects[i].shader;
+    }
+    std::vector<ObjectShading> plain_direct = plain_lit;
+    for (ObjectShading& object : plain_direct) object.irradiance = nullptr;
+
+    // By pattern: evaluated, from grids, and with light from grids.
+    std::array<std::vector<Ours>, 2> ours;
+    ours[constant].push_back({"", "one colour", plain, plain_direct});
+    ours[constant].push_back({"/light", "one colour, its light from grids", plain, plain_lit});
+    ours[procedural].push_back({"/direct", "greenmarble evaluated", marble, direct(grids)});
+    ours[procedural].push_back({"", "greenmarble from grids", marble, grids});
+    ours[procedural].push_back({"/light", "greenmarble and its light from grids", marble, lit});
+
     const Described all = describe(plain.scene);
     const Cycles cycles(all, bench.folder, threads);
     const PovRay povray(all, bench.folder, threads);
-    Peer peers[]{{"cycles", "two noise textures of 15 and 14 octaves", {}},
-                 {"povray", "marble with turbulence, and wrinkles, 28 noises", {}}};
-
-    std::vector<double> constant_seconds, grid_seconds, direct_seconds;
-    Film constant_film(width, height, {}), grid_film = constant_film, direct_film = constant_film;
+    Peer peers[]{{"cycles", {"one colour", "two noise textures of 15 and 14 octaves"}, {}},
+                 {"povray", {"one colour", "marble with turbulence, and wrinkles, 28 noises"}, {}}};
     for (int round = 0; round < round_count; ++round) {
-        constant_seconds.push_back(plain.render(color, constant_film));
-        grid_seconds.push_back(marble.render(grids, grid_film));
-        direct_seconds.push_back(marble.render(evaluated, direct_film));
+        for (std::vector<Ours>& pattern : ours) {
+            for (Ours& way : pattern) way.run();
+        }
         cycles.run(peers[0]);
         povray.run(peers[1]);
     }
 
-    const auto over = [](const std::vector<double>& ours, const std::vector<double>& theirs) {
-        std::vector<double> ratios;
-        for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / theirs[i]);
-        return spread(std::move(ratios));
-    };
     Rows& rows = bench.rows;
     const std::string frame =
-        fmt::format("still life, {}x{}, {} spp, {} threads", width, height, spp, threads);
-    const std::string grid_error =
-        fmt::format("rmse {:.2g} to direct", compare_films(grid_film, direct_film).rmse);
+        fmt::format("still life, {}x{}, {} spp, direct light with shadows, {} threads", width,
+                    height, spp, threads);
+    const char* const patterns[]{"constant", "procedural"};
     for (const Peer& peer : peers) {
-        const std::string name = fmt::format("renderers/{}/", peer.name);
-        const std::string error =
-            fmt::format("rmse {:.2g} of the mean", relative_rmse(peer.film, constant_film));
-        rows.add({name + "constant_ratio", over(constant_seconds, peer.seconds[constant]), "ratio",
-                  error, frame + ", one colour, direct light with shadows: ours over theirs"});
-        rows.add({name + "procedural_ratio", over(grid_seconds, peer.seconds[procedural]), "ratio",
-                  grid_error,
-                  fmt::format("{}: greenmarble from grids over {}", frame, peer.patterns)});
-        rows.add({name + "procedural_ratio/direct", over(direct_seconds, peer.seconds[procedural]),
-                  "ratio", "exact",
-                  fmt::format("{}: greenmarble evaluated over {}", frame, peer.patterns)});
-        rows.add({name + "constant", spread(peer.seconds[constant]), "s", error, frame});
-        rows.add({name + "procedural", spread(peer.seconds[procedural]), "s", "",
-                  frame + ": " + peer.patterns});
+        const std::string picture_error = fmt::format(
+            "rmse {:.2g} of the mean", relative_rmse(peer.film, ours[constant].front().film));
+        for (const Pattern pattern : {constant, procedural}) {
+            const std::string name = fmt::format("renderers/{}/{}", peer.name, patterns[pattern]);
+            for (const Ours& way : ours[pattern]) {
+                rows.add({name + "_ratio" + way.name, over(way.seconds, peer.seconds[pattern]),
+                          "ratio", way.error(ours[pattern].front()),
+                          fmt::format("{}: {} over {}", frame, way.what, peer.patterns[pattern])});
+            }
+            rows.add({name, spread(peer.seconds[pattern]), "s",
+                      pattern == constant ? picture_error : "",
+                      frame + ": " + peer.patterns[pattern]});
+        }
     }
-    rows.add({"renderers/estara/constant", spread(constant_seconds), "s", "", frame});
-    rows.add({"renderers/estara/grid", spread(grid_seconds), "s", grid_error, frame});
-    rows.add({"renderers/estara/direct", spread(direct_seconds), "s", "exact", frame});
+    for (const Pattern pattern : {constant, procedural}) {
+        for (const Ours& way : ours[pattern]) {
+            rows.add({fmt::format("renderers/estara/{}{}", patterns[pattern], way.name),
+                      spread(way.seconds), "s", way.error(ours[pattern].front()),
+                      frame + ": " + way.what});
+        }
+    }
 }
 
 }  // namespace estara::bench

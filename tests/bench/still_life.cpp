@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estara/bake/bake.h"
+#include "estara/bake/irradiance.h"
 #include "estara/scenes/load.h"
 #include "meshes.h"
 #include "run_command.h"
@@ -37,6 +38,18 @@ std::vector<ObjectShading> baked(const Scene& scene, RayScene& rays, int width, 
         const double size = std::max(sizes[i], voxel_size_for(mesh, *shader, max_voxels));
         auto pyramid = std::make_shared<BrickPyramid>(bake_mesh(mesh, *shader, size, false));
         shading.push_back({shader, std::move(pyramid), float(size), nullptr});
+    }
+    return shading;
+}
+
+std::vector<ObjectShading> with_light(std::vector<ObjectShading> shading, const Scene& scene,
+                                      const RayScene& rays) {
+    for (std::size_t i = 0; i < shading.size(); ++i) {
+        IrradianceSettings settings;
+        settings.finest = shading[i].filter_width;
+        settings.max_bytes = std::uint64_t{2} << 30;
+        shading[i].irradiance =
+            std::make_shared<BrickPyramid>(bake_irradiance(scene, rays, int(i), settings));
     }
     return shading;
 }

@@ -18,6 +18,10 @@ Scene still_life_in(const ShaderChoice& choice, const std::filesystem::path& fol
 /// @param width, height  pixels of the pictures
 std::vector<ObjectShading> baked(const Scene& scene, RayScene& rays, int width, int height);
 
+/// The same with the diffuse light of all lights baked as well, as estara-bake --irradiance does.
+std::vector<ObjectShading> with_light(std::vector<ObjectShading> shading, const Scene& scene,
+                                      const RayScene& rays);
+
 /// The same objects evaluated directly.
 std::vector<ObjectShading> direct(std::vector<ObjectShading> shading);
 
