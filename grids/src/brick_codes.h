@@ -125,22 +125,25 @@ ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* 
     }
 }
 
+/// Points that are interpolated at once.
+constexpr std::size_t lanes = 4;
+
 /// Trilinear values of four cells, each in a brick of its own.
 /// @param part   where the part begins in each brick
 /// @param cell   place of each cell's first voxel in its brick
 /// @param x,y,z  how far each point is from that voxel to the next one, [0, 1]
 /// @param value  one for every float: of the four points
 template <int floats>
-ESTARA_KERNEL void interpolate_cells(const std::array<const std::uint32_t*, 4>& part,
-                                     const std::array<std::uint32_t, 4>& cell, const Floats4& x,
+ESTARA_KERNEL void interpolate_cells(const std::array<const std::uint32_t*, lanes>& part,
+                                     const std::array<std::uint32_t, lanes>& cell, const Floats4& x,
                                      const Floats4& y, const Floats4& z, Floats4* value) noexcept {
     constexpr std::array<CodeField, 4> fields = code_fields(floats);
     // Two voxels along z and four points side by side: lanes are the voxels z, z + 1 of the first
     // point, of the second, ... (No function returns such a vector: without AVX the calling
     // convention has none.)
     const auto load = [&](std::uint32_t voxel_x, std::uint32_t voxel_y, Ints8& words) {
-        std::array<std::uint64_t, 4> two;
-        for (std::size_t i = 0; i < 4; ++i) {
+        std::array<std::uint64_t, lanes> two;
+        for (std::size_t i = 0; i < lanes; ++i) {
             std::memcpy(&two[i], part[i] + 2 * floats + cell[i] + in_brick(voxel_x, voxel_y, 0),
                         sizeof two[i]);
         }
@@ -173,9 +176,9 @@ ESTARA_KERNEL void interpolate_cells(const std::array<const std::uint32_t*, 4>& 
         const Floats4 blended = __builtin_shufflevector(sum, sum, 0, 2, 4, 6) +
                                 __builtin_shufflevector(sum, sum, 1, 3, 5, 7);
         Floats4 offset, scale;
-        for (int i = 0; i < 4; ++i) {
-            std::memcpy(&offset[i], part[std::size_t(i)] + c, sizeof(float));
-            std::memcpy(&scale[i], part[std::size_t(i)] + floats + c, sizeof(float));
+        for (std::size_t i = 0; i < lanes; ++i) {
+            offset[i] = std::bit_cast<float>(part[i][c]);
+            scale[i] = std::bit_cast<float>(part[i][std::size_t(floats) + c]);
         }
         value[c] = offset + scale * blended;
     }

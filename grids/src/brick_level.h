@@ -15,13 +15,15 @@
 
 namespace estara {
 
-/// An index coordinate that may be anything, between -1 (NaN too) and 2^30, and so outside of every
-/// level where it was; its floor fits an int.
+/// At least -1, which NaN becomes too.
 inline double not_below(double index) noexcept { return index > -1.0 ? index : -1.0; }
+/// At most 2^30.
 inline double not_above(double index) noexcept {
     constexpr double farthest = 1 << 30;
     return index < farthest ? index : farthest;
 }
+/// An index coordinate that may be anything, between -1 and 2^30, and so outside of every level
+/// where it was; its floor fits an int.
 inline double within_int(double index) noexcept { return not_above(not_below(index)); }
 
 struct BrickLevel {

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "blocks.h"
 #include "brick_level.h"
 #include "estara/scenes/error.h"
-#include "estara/shaders/math.h"
+#include "estara/shaders/kernel.h"
 #include "estara/shaders/wide.h"
 
 namespace estara {
@@ -54,9 +55,10 @@ ESTARA_KERNEL float fractional_level(float footprint, float scale, float last) n
     return positive < last ? positive : last;
 }
 
-/// What a footprint is multiplied by to get 2^level.
+/// What a footprint is multiplied by to get 2^level. Finite, so that no footprint makes it NaN.
 float level_scale(double voxel_size) noexcept {
-    return float(std::exp2(double(BrickPyramid::level_bias)) / voxel_size);
+    constexpr double largest = std::numeric_limits<float>::max();
+    return float(std::min(std::exp2(double(BrickPyramid::level_bias)) / voxel_size, largest));
 }
 
 }  // namespace
@@ -133,9 +135,6 @@ struct BrickPyramid::Batch {
 };
 
 namespace {
-
-/// Points that are interpolated at once.
-constexpr std::size_t lanes = 4;
 
 constexpr std::size_t whole_lanes(std::size_t points) {
     return (points + lanes - 1) / lanes * lanes;

@@ -2,8 +2,9 @@
 
 blender --background --factory-startup --python cycles.py -- DESCRIPTION (MATERIAL PICTURE)...
 
-Settings are those that make Cycles fastest at the same work: direct light alone, no denoising, no
-adaptive sampling, hard shadows. Units are watts per steradian times 4 pi, as Blender has them.
+Direct light alone with hard shadows, a box filter of one pixel, neither denoising nor adaptive
+sampling; the rest as Blender has it: a ray to one of the lights a sample. Blender's watts are watts
+per steradian times 4 pi.
 """
 import json
 import math

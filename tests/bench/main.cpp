@@ -13,14 +13,15 @@ namespace {
 struct Group {
     const char* name;
     void (*run)(Bench&);
+    bool only_if_named = false;
 };
-constexpr Group groups[]{{"lookup", bench::lookup},      {"shaders", bench::shaders},
-                         {"frame", bench::frame},        {"bake", bench::bake},
-                         {"load", bench::load},          {"large", bench::large},
-                         {"renderers", bench::renderers}};
-
-/// Run only where it is named.
-bool is_extra(const std::string& name) { return name == "large" || name == "renderers"; }
+constexpr Group groups[]{{"lookup", bench::lookup},
+                         {"shaders", bench::shaders},
+                         {"frame", bench::frame},
+                         {"bake", bench::bake},
+                         {"load", bench::load},
+                         {"large", bench::large, true},
+                         {"renderers", bench::renderers, true}};
 
 struct Options {
     std::vector<std::string> names;
@@ -29,9 +30,10 @@ struct Options {
     std::string folder = "build";
 };
 
-bool is_wanted(const Options& options, const std::string& name) {
+bool is_wanted(const Options& options, const Group& group) {
+    const std::string name = group.name;
     if (name == "large" && options.large) return true;
-    if (options.names.empty()) return !is_extra(name);
+    if (options.names.empty()) return !group.only_if_named;
     return std::find(options.names.begin(), options.names.end(), name) != options.names.end();
 }
 
@@ -42,7 +44,7 @@ bool run(const Options& options) {
     bench.large_voxels = options.large_voxels;
     std::filesystem::create_directories(bench.folder);
     for (const Group& group : groups) {
-        if (!is_wanted(options, group.name)) continue;
+        if (!is_wanted(options, group)) continue;
         const Stopwatch watch;
         group.run(bench);
         fmt::print(stderr, "{}: {}\n", group.name, format_seconds(watch.seconds()));

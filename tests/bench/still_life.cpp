@@ -19,7 +19,6 @@ Scene still_life_in(const ShaderChoice& choice, const std::filesystem::path& fol
     const std::string path = folder / "still-life.glb";
     run_command("estara-scenes still-life -o '" + path + "'");
     Scene scene = load_scene(path);
-    scene.ambient = glm::vec3(0.0f);
     for (Object& object : scene.objects) {
         object.choice = choice;
         object.shader = bind_choice(object.choice, object.mesh.has_uv());

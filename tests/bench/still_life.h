@@ -9,7 +9,7 @@
 
 namespace estara::bench {
 
-/// Every object of the still life in this shader, without ambient light.
+/// Every object of the still life in this shader.
 /// @param folder  for the scene's file
 Scene still_life_in(const ShaderChoice& choice, const std::filesystem::path& folder);
 

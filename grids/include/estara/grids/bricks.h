@@ -80,7 +80,7 @@ public:
                 std::size_t stride, std::uint8_t* found) const noexcept;
 
     /// The (fractional) level for a footprint, in [0, levels() - 1]: log2(footprint / voxel) plus
-    /// level_bias, within 5e-7, its fraction steepened: 0 up to 3/8, 1 from 5/8 on.
+    /// level_bias, within 1e-6, its fraction steepened: 0 up to 3/8, 1 from 5/8 on.
     float level_for(float footprint) const noexcept;
 
     /// Added to the level: a lookup blurs over two voxels, so the matching level is too soft. RMSE
