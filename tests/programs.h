@@ -12,17 +12,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-namespace estara::test {
+#include "text_of.h"
 
-inline std::string text_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
+namespace estara::test {
 
 /// A folder that is gone with the test. folder / "name" is a path in it.
 class TemporaryFolder {

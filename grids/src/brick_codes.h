@@ -56,11 +56,11 @@ struct BrickPart {
     int first, floats;   ///< floats of the record: [first, first + floats)
     std::size_t offset;  ///< words before it in its brick
 
+    /// Words before the codes.
+    static constexpr std::size_t header(int floats) noexcept { return 2 * std::size_t(floats); }
     static constexpr std::size_t words(int floats) noexcept {
-        return 2 * std::size_t(floats) + brick_voxels;
+        return header(floats) + brick_voxels;
     }
-
-    std::size_t header() const noexcept { return std::size_t(2 * floats); }  ///< words before codes
 };
 
 /// Place of a voxel among the codes of a brick.
@@ -81,7 +81,7 @@ struct RawBrick {
 /// @param part  BrickPart::words(floats) words
 ESTARA_KERNEL void encode_brick(const RawBrick* raw, int floats, std::uint32_t* part) noexcept {
     const std::array<CodeField, 4> fields = code_fields(floats);
-    std::uint32_t* const words = part + 2 * floats;
+    std::uint32_t* const words = part + BrickPart::header(floats);
     for (int c = 0; c < floats; ++c) {
         const float* const value = raw[c].value.data();
         // The order of the comparisons leaves NaN out.
@@ -144,8 +144,10 @@ ESTARA_KERNEL void interpolate_cells(const std::array<const std::uint32_t*, lane
     const auto load = [&](std::uint32_t voxel_x, std::uint32_t voxel_y, Ints8& words) {
         std::array<std::uint64_t, lanes> two;
         for (std::size_t i = 0; i < lanes; ++i) {
-            std::memcpy(&two[i], part[i] + 2 * floats + cell[i] + in_brick(voxel_x, voxel_y, 0),
-                        sizeof two[i]);
+            std::memcpy(
+                &two[i],
+                part[i] + BrickPart::header(floats) + cell[i] + in_brick(voxel_x, voxel_y, 0),
+                sizeof two[i]);
         }
         const Words4 side_by_side{two[0], two[1], two[2], two[3]};
         std::memcpy(&words, &side_by_side, sizeof words);

@@ -266,7 +266,7 @@ ESTARA_KERNEL void locate(const std::vector<BrickLevel>& levels, const ToIndex& 
     for (const BrickPart& part : parts) {
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint32_t* const words = taps.brick[i] + part.offset;
-            const std::uint32_t* const near = words + part.header() + taps.cell[i];
+            const std::uint32_t* const near = words + BrickPart::header(part.floats) + taps.cell[i];
             __builtin_prefetch(words);
             __builtin_prefetch(near);
             __builtin_prefetch(near + in_brick(0, 1, 1));

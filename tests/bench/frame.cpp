@@ -17,8 +17,6 @@ namespace {
 
 constexpr Raster raster{1280, 720};
 constexpr int round_count = 11;
-/// RMSE of grids against direct evaluation; tests/README.md, "Image error".
-constexpr double allowed_rmse = 0.01;
 
 FrameSettings frame_settings() {
     FrameSettings settings;

@@ -7,12 +7,12 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <regex>
 #include <sstream>
 
+#include "../text_of.h"
 #include "estara/render/compare.h"
 #include "estara/scenes/program.h"
 #include "rounds.h"
@@ -30,8 +30,6 @@ constexpr int round_count = 5;
 constexpr float albedo = 0.8f;
 /// RMSE of another renderer's picture over its mean: Cycles' noise of one light a sample is most.
 constexpr double allowed_rmse_of_mean = 0.2;
-/// RMSE of ours from grids against direct evaluation; tests/README.md, "Image error".
-constexpr double allowed_rmse = 0.01;
 
 /// What all renderers are given: everything in world space, at time 0.
 struct Described {
@@ -140,13 +138,6 @@ std::string pov_scene(const Described& all, const std::string& pigment) {
     return fmt::to_string(text);
 }
 
-std::string text_of(const std::string& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 /// R, G and B of a picture, and the attribute of its header that names its time of rendering.
 Film picture(const std::string& path, std::string* time = nullptr) {
     const auto input = OIIO::ImageInput::open(path);
@@ -248,7 +239,7 @@ public:
                         fmt::format("'+I{}' '+O{}' +FE -D +W{} +H{} +WT{} +A0.0 +AM1 +R4 -J",
                                     scene(pattern), out, width, height, m_threads),
                         says);
-            const std::string text = text_of(says);
+            const std::string text = test::text_of(says);
             std::smatch time, samples;
             if (!std::regex_search(text, time,
                                    std::regex("Trace Time:.*\\(([0-9.]+) seconds\\)")) ||

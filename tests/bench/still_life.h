@@ -9,6 +9,9 @@
 
 namespace estara::bench {
 
+/// RMSE of grids against direct evaluation; tests/README.md, "Image error".
+constexpr double allowed_rmse = 0.01;
+
 /// Every object of the still life in this shader.
 /// @param folder  for the scene's file
 Scene still_life_in(const ShaderChoice& choice, const std::filesystem::path& folder);

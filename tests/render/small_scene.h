@@ -6,10 +6,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 
+#include "../text_of.h"
 #include "estara/scenes/error.h"
 #include "estara/scenes/scene.h"
 
@@ -105,13 +104,6 @@ public:
 private:
     std::filesystem::path m_path;
 };
-
-inline std::string text_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 /// What an Error says, or "no error".
 template <class Body>

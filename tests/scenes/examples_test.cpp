@@ -9,14 +9,15 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <string>
 
+#include "../text_of.h"
 #include "estara/scenes/load.h"
 #include "estara/scenes/ray_scene.h"
 #include "estara/scenes/static_light.h"
@@ -69,12 +70,10 @@ Scene example(const std::string& name) {
 
 /// The JSON of a .glb file, its first chunk.
 nlohmann::json json_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
+    const std::string file = text_of(path);
     std::uint32_t size = 0;
-    file.seekg(12).read(reinterpret_cast<char*>(&size), sizeof size);
-    std::string text(size, '\0');
-    file.seekg(20).read(text.data(), std::streamsize(size));
-    return nlohmann::json::parse(text);
+    std::memcpy(&size, file.data() + 12, sizeof size);
+    return nlohmann::json::parse(file.substr(20, size));
 }
 
 /// Vertices in one place are one corner.
@@ -477,8 +476,7 @@ TEST(Examples, AreTheSameFileEveryTime) {
     const auto bytes = [&](const std::string& scene) {
         const std::string path = folder / (scene + ".glb");
         EXPECT_EQ(estara_scenes(scene + " -o " + path).status, 0);
-        std::ifstream file(path, std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(file), {});
+        return text_of(path);
     };
     for (const char* scene : {"tumble", "face"}) {  // from formulas, and by the mesher
         SCOPED_TRACE(scene);
@@ -528,8 +526,7 @@ TEST(Examples, AreWholeOrNotThereWhenTheDiskIsFull) {
                                 path + " 2> " + (folder / "said");
     const int status = std::system(("sh -c \"" + limited + "\"").c_str());
     EXPECT_EQ(WEXITSTATUS(status), 1);
-    std::ifstream said(folder / "said");
-    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(said), {}),
+    EXPECT_EQ(text_of(folder / "said"),
               "estara-scenes: " + path + ": cannot be written whole; is the disk full?\n");
     EXPECT_FALSE(fs::exists(path));
     EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(path).parent_path()), {}), 1)
