@@ -59,7 +59,9 @@ TextureGrid bake_mesh(const Mesh& mesh, const BoundShader& shader, double voxel_
                          [&] { describe(grid, mesh, shader); });
     grid.voxel_size = voxel_size;
     grid.origin = band.origin;
+    if (shader.domain() == Domain::point) band.triangle = {};  // such a shader asks for no point
     shade(mesh, shader, band, grid, done);
+    grid.distance = std::move(band.distance);
     grid.levels.front().blocks = std::move(band.blocks);
     grid.levels.front().cells = std::move(band.cells);
     band = {};  // before the levels need memory

@@ -1,4 +1,4 @@
-// The two loops over a block's triangles, where a bake spends its time besides the shader.
+// The loop over a block's triangles, where a bake spends its time besides the shader.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct BlockInput {
 };
 
 /// The 9^3 cells around a block's voxels, -1 to 7 in each axis.
-struct CellRows {
+struct alignas(32) CellRows {
     static constexpr int side = 9;
     /// Bit z + 1 of rows[x + 1][y + 1] is cell (x, y, z).
     std::array<std::array<std::uint16_t, 16>, side> rows{};
@@ -33,31 +33,28 @@ struct CellRows {
     }
 };
 
-/// The nearest triangle of each of 512 voxels, in bit order. In double, all of it: a loop with one
-/// width of numbers is what compilers make wide.
+/// The nearest triangle of each of 512 voxels, in bit order.
 struct alignas(64) NearestTriangles {
-    std::array<double, 512> distance2;  ///< voxels squared; infinite: none
-    std::array<double, 512> height;  ///< above its plane, voxels; below is behind. 0 if it has none
-    std::array<double, 512> triangle;  ///< a whole number
+    std::array<float, 512> distance;  ///< voxels; infinite: none
+    std::array<float, 512> height;  ///< above its plane, voxels; below is behind. 0 if it has none
+    std::array<std::uint32_t, 512> triangle;
 
     void clear() noexcept {
-        distance2.fill(std::numeric_limits<double>::infinity());
-        height.fill(0.0);
-        triangle.fill(0.0);
+        distance.fill(std::numeric_limits<float>::infinity());
+        height.fill(0.0f);
+        triangle.fill(0);
     }
 };
 
-/// Adds the cells that the triangles meet.
-void mark_cells(const BlockInput& in, CellRows& cells,
-                InstructionSet limit = InstructionSet::avx512) noexcept;
-
-/// For each voxel the nearest of the triangles that meet a cell around it. Of triangles equally
-/// near (they share the nearest edge or vertex) the one that faces the voxel most: the others may
-/// see it from behind although it is in front of the surface.
+/// Adds the cells that the triangles meet and, for each voxel, takes them into account that meet a
+/// cell around it: the nearest is kept. Of triangles equally near (they share the nearest edge or
+/// vertex) it is the one that faces the voxel most: the others may see it from behind although it
+/// is in front of the surface.
 ///
-/// Both run the widest instruction set of the machine, but none wider than `limit`; the bits are
-/// the same on all of them.
-void find_nearest(const BlockInput& in, NearestTriangles& nearest,
-                  InstructionSet limit = InstructionSet::avx512) noexcept;
+/// Distances are within 5e-6 voxels (float, from the block's middle); what differs by less than
+/// 1e-5 is equally near. Runs the widest instruction set of the machine, but none wider than
+/// `limit`; the bits are the same on all of them.
+void voxelize(const BlockInput& in, CellRows& cells, NearestTriangles& nearest,
+              InstructionSet limit = InstructionSet::avx512) noexcept;
 
 }  // namespace estara

@@ -84,19 +84,12 @@ private:
         GridLevel& level = m_result.levels.front();
         level.planes.assign(floats, std::vector<float>(band.voxels(), 0.0f));
         tbb::parallel_for(std::size_t{0}, band.blocks.size(), [&](std::size_t b) {
-            thread_local NearestPoints near;
             thread_local std::vector<MeshPoint> points;
             thread_local std::vector<glm::vec3> E;
-            nearest_points(m_mesh, band, b, near);
-            const auto count = std::size_t(band.blocks[b].active.count());
-            points.resize(count);
-            E.resize(count);
-            for (std::size_t i = 0; i < count; ++i) {
-                points[i] = mesh_point(m_mesh, near.triangle[i], near.barycentrics[i].x,
-                                       near.barycentrics[i].y);
-            }
+            nearest_points(m_mesh, band, b, points);
+            E.resize(points.size());
             m_light.irradiance(points, E.data());
-            for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t i = 0; i < E.size(); ++i) {
                 for (int c = 0; c < 3; ++c) {
                     level.planes[std::size_t(c)][band.blocks[b].first + i] = E[i][c];
                 }

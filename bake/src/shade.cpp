@@ -58,7 +58,6 @@ public:
 private:
     void add_voxels(std::size_t b) {
         const Block& block = m_band.blocks[b];
-        nearest_distances(m_mesh, m_band, b, m_grid.distance.data() + block.first);
         float at[3][8];
         for (int i = 0; i < 8; ++i) {
             const glm::vec3 p = m_band.position(block.origin + i);
@@ -73,15 +72,9 @@ private:
     }
 
     void add_surface_points(std::size_t b) {
-        const Block& block = m_band.blocks[b];
         nearest_points(m_mesh, m_band, b, m_points);
-        const int count = block.active.count();
-        std::copy_n(m_points.distance.begin(), count,
-                    m_grid.distance.begin() + std::ptrdiff_t(block.first));
-        for (std::size_t n = 0; n < std::size_t(count); ++n) {
-            const glm::vec2 b12 = m_points.barycentrics[n];
-            const MeshPoint m = mesh_point(m_mesh, m_points.triangle[n], b12.x, b12.y);
-            m_batch.set(next(), m.P, m.N, m.uv, tangent(m_mesh, m));
+        for (const MeshPoint& point : m_points) {
+            m_batch.set(next(), point.P, point.N, point.uv, tangent(m_mesh, point));
         }
     }
 
@@ -126,7 +119,7 @@ private:
     const VoxelsDone& m_done;
     std::atomic<bool>& m_finite;
     SurfaceBatch m_batch;
-    NearestPoints m_points;
+    std::vector<MeshPoint> m_points;
     std::vector<float> m_values;  ///< planes as the shader writes them
     std::uint64_t m_first = 0;    ///< row of the batch's first point
 };
@@ -138,9 +131,8 @@ void shade(const Mesh& mesh, const BoundShader& shader, const SurfaceBand& band,
     const std::size_t voxels = band.voxels();
     std::vector<std::vector<float>>& planes = grid.levels.emplace_back().planes;
     planes.resize(std::size_t(shader.info().baked_floats));
-    tbb::parallel_for(std::size_t{0}, planes.size() + 1, [&](std::size_t k) {
-        (k < planes.size() ? planes[k] : grid.distance).resize(voxels);
-    });
+    tbb::parallel_for(std::size_t{0}, planes.size(),
+                      [&](std::size_t k) { planes[k].resize(voxels); });
 
     std::atomic<bool> finite{true};
     tbb::enumerable_thread_specific<Shading> workers(std::cref(mesh), std::cref(shader),

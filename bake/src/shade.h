@@ -6,7 +6,7 @@
 
 namespace estara {
 
-/// Fills the planes of level 0 and the distances. Parallel; the same result for any number of
+/// Fills the planes of level 0. Parallel; the same result for any number of
 /// threads. Error if the shader gives a value that is not finite.
 /// @param grid  with origin, voxel size and channels; gets its first level, without blocks
 void shade(const Mesh& mesh, const BoundShader& shader, const SurfaceBand& band, TextureGrid& grid,

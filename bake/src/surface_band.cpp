@@ -1,7 +1,8 @@
 #include "estara/bake/surface_band.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,10 +47,6 @@ Lattice make_lattice(const Mesh& mesh, double voxel_size) {
     return {voxel_size, glm::dvec3(box.min) - margin * voxel_size, slack};
 }
 
-Lattice lattice_of(const SurfaceBand& band) noexcept {
-    return {band.voxel_size, band.origin, band.slack};
-}
-
 /// A block's own cells.
 BlockMask cells_of(const CellRows& rows) noexcept {
     BlockMask mask;
@@ -73,26 +70,49 @@ BlockMask corners_of(const CellRows& rows) noexcept {
     return mask;
 }
 
-BlockInput input(const Mesh& mesh, const SurfaceBand& band, const Lattice& lattice,
-                 std::size_t block) noexcept {
-    const SurfaceBand::Near& near = band.near[block];
-    return {mesh, lattice, band.blocks[block].origin,
-            std::span(band.triangles).subspan(near.first, near.count)};
-}
+/// Blocks that are voxelized one after another. A fixed number, so that threads change nothing.
+constexpr std::size_t chunk_size = 64;
 
-/// The nearest triangles of a block. 12 KiB that a thread keeps.
-const NearestTriangles& nearest_triangles(const BlockInput& in) noexcept {
-    thread_local NearestTriangles nearest;
-    nearest.clear();
-    find_nearest(in, nearest);
-    return nearest;
-}
+/// What a chunk of blocks adds to the band.
+struct Chunk {
+    std::vector<Block> blocks;  ///< rows counted from 0
+    std::vector<BlockMask> cells;
+    std::vector<float> distance;
+    std::vector<std::uint32_t> triangle;
 
-/// What was found for voxel `bit`, with the sign of the side.
-float signed_distance(const NearestTriangles& nearest, std::size_t bit,
-                      double voxel_size) noexcept {
-    const double side = 1.0 - 2.0 * double(nearest.height[bit] < 0.0);  // no branch: it is random
-    return float(side * std::sqrt(nearest.distance2[bit]) * voxel_size);
+    /// What has been found for a block's voxels, with the sign of the side.
+    void add_voxels(const NearestTriangles& nearest, const BlockMask& active, double voxel_size) {
+        std::size_t row = distance.size();
+        distance.resize(row + std::size_t(active.count()));
+        triangle.resize(distance.size());
+        for_each_bit(active, [&](int x, int y, int z) {
+            const auto bit = std::size_t(BlockMask::bit(x, y, z));
+            // No branch: the side is random.
+            const double side = 1.0 - 2.0 * double(nearest.height[bit] < 0.0f);
+            distance[row] = float(side * double(nearest.distance[bit]) * voxel_size);
+            triangle[row++] = nearest.triangle[bit];
+        });
+    }
+};
+
+Chunk voxelize_chunk(const Mesh& mesh, const Lattice& lattice, const BlockTriangles& sorted,
+                     std::size_t begin, std::size_t end) {
+    thread_local NearestTriangles nearest;  // 6 KiB
+    Chunk chunk;
+    for (std::size_t b = begin; b < end; ++b) {
+        CellRows rows;
+        nearest.clear();
+        voxelize({mesh, lattice, 8 * sorted.blocks[b],
+                  std::span(sorted.triangles)
+                      .subspan(sorted.first[b], sorted.first[b + 1] - sorted.first[b])},
+                 rows, nearest);
+        const BlockMask active = corners_of(rows);
+        if (!active.any()) continue;  // the block's bounds met, its cells did not
+        chunk.blocks.push_back({8 * sorted.blocks[b], active, chunk.distance.size()});
+        chunk.cells.push_back(cells_of(rows));
+        chunk.add_voxels(nearest, active, lattice.voxel_size);
+    }
+    return chunk;
 }
 
 double ratio(double a, double b) noexcept { return b > 0.0 ? a / b : 0.0; }
@@ -128,58 +148,52 @@ void check_voxel_size(const Mesh& mesh, double voxel_size) { make_lattice(mesh, 
 
 SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
     const Lattice lattice = make_lattice(mesh, voxel_size);
-    BlockTriangles sorted = triangles_by_block(mesh, lattice);
-
+    const BlockTriangles sorted = triangles_by_block(mesh, lattice);
     const std::size_t count = sorted.blocks.size();
-    std::vector<BlockMask> active(count), cells(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
-        CellRows rows;
-        mark_cells({mesh, lattice, 8 * sorted.blocks[b],
-                    std::span(sorted.triangles)
-                        .subspan(sorted.first[b], sorted.first[b + 1] - sorted.first[b])},
-                   rows);
-        cells[b] = cells_of(rows);
-        active[b] = corners_of(rows);
-    });
-
-    SurfaceBand band{voxel_size, lattice.origin, lattice.slack, {}, {}, {}, {}};
-    std::uint64_t rows = 0;
-    for (std::size_t b = 0; b < count; ++b) {
-        if (!active[b].any()) continue;  // the block's bounds met, its cells did not
-        band.blocks.push_back({8 * sorted.blocks[b], active[b], rows});
-        band.cells.push_back(cells[b]);
-        band.near.push_back(
-            {sorted.first[b], std::uint32_t(sorted.first[b + 1] - sorted.first[b])});
-        rows += std::uint64_t(active[b].count());
-    }
-    band.triangles = std::move(sorted.triangles);
+    SurfaceBand band{voxel_size, lattice.origin, {}, {}, {}, {}};
+    std::size_t next = 0;
+    const auto begin_chunk = [&](tbb::flow_control& flow) {
+        const std::size_t begin = next;
+        if (begin >= count) flow.stop();
+        next += chunk_size;
+        return begin;
+    };
+    const auto voxelize = [&](std::size_t begin) {
+        return voxelize_chunk(mesh, lattice, sorted, begin, std::min(begin + chunk_size, count));
+    };
+    const auto add = [&](const Chunk& chunk) {
+        const std::uint64_t rows = band.voxels();
+        for (Block block : chunk.blocks) {
+            block.first += rows;
+            band.blocks.push_back(block);
+        }
+        band.cells.insert(band.cells.end(), chunk.cells.begin(), chunk.cells.end());
+        band.distance.insert(band.distance.end(), chunk.distance.begin(), chunk.distance.end());
+        band.triangle.insert(band.triangle.end(), chunk.triangle.begin(), chunk.triangle.end());
+    };
+    // In this way chunks are few at any time. All of them kept until the band's size is known would
+    // be as much memory as the band, which is not given back to the system.
+    const auto chunks_at_a_time = 2 * std::size_t(tbb::this_task_arena::max_concurrency());
+    using tbb::filter_mode, tbb::make_filter;
+    tbb::parallel_pipeline(
+        chunks_at_a_time,
+        make_filter<void, std::size_t>(filter_mode::serial_in_order, begin_chunk) &
+            make_filter<std::size_t, Chunk>(filter_mode::parallel, voxelize) &
+            make_filter<Chunk, void>(filter_mode::serial_in_order, add));
     return band;
 }
 
-void nearest_distances(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
-                       float* distances) noexcept {
-    const Lattice lattice = lattice_of(band);
-    const NearestTriangles& nearest = nearest_triangles(input(mesh, band, lattice, block));
-    for_each_bit(band.blocks[block].active, [&](int x, int y, int z) {
-        const auto bit = std::size_t(BlockMask::bit(x, y, z));
-        *distances++ = signed_distance(nearest, bit, band.voxel_size);
-    });
-}
-
 void nearest_points(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
-                    NearestPoints& points) noexcept {
-    const Lattice lattice = lattice_of(band);
-    const NearestTriangles& nearest = nearest_triangles(input(mesh, band, lattice, block));
-    std::size_t i = 0;
-    for_each_bit(band.blocks[block].active, [&](int x, int y, int z) {
-        const auto bit = std::size_t(BlockMask::bit(x, y, z));
-        const auto triangle = std::uint32_t(nearest.triangle[bit]);
-        const glm::dvec3 voxel(band.blocks[block].origin + glm::ivec3(x, y, z));
-        points.distance[i] = signed_distance(nearest, bit, band.voxel_size);
-        points.triangle[i] = triangle;
-        points.barycentrics[i] =
-            glm::vec2(nearest_on_triangle(voxel, lattice.corners(mesh, triangle)));
-        ++i;
+                    std::vector<MeshPoint>& points) {
+    const Lattice lattice{band.voxel_size, band.origin, 0.0};
+    points.clear();
+    const Block& of = band.blocks[block];
+    const std::uint32_t* const triangles = band.triangle.data() + of.first;
+    for_each_bit(of.active, [&](int x, int y, int z) {
+        const std::uint32_t triangle = triangles[points.size()];
+        const glm::vec2 b12(nearest_on_triangle(glm::dvec3(of.origin + glm::ivec3(x, y, z)),
+                                                lattice.corners(mesh, triangle)));
+        points.push_back(mesh_point(mesh, triangle, b12.x, b12.y));
     });
 }
 

@@ -28,24 +28,11 @@ void for_each_voxel(const SurfaceBand& band, Function&& function) {
 }
 
 /// The nearest point of every voxel, by row.
-struct Points {
-    std::vector<float> distance;
-    std::vector<std::uint32_t> triangle;
-    std::vector<glm::vec2> barycentrics;
-};
-
-Points points_of(const Mesh& mesh, const SurfaceBand& band) {
-    Points all;
+std::vector<MeshPoint> points_of(const Mesh& mesh, const SurfaceBand& band) {
+    std::vector<MeshPoint> all, points;
     for (std::size_t b = 0; b < band.blocks.size(); ++b) {
-        static NearestPoints points;
         nearest_points(mesh, band, b, points);
-        const int count = band.blocks[b].active.count();
-        all.distance.insert(all.distance.end(), points.distance.begin(),
-                            points.distance.begin() + count);
-        all.triangle.insert(all.triangle.end(), points.triangle.begin(),
-                            points.triangle.begin() + count);
-        all.barycentrics.insert(all.barycentrics.end(), points.barycentrics.begin(),
-                                points.barycentrics.begin() + count);
+        all.insert(all.end(), points.begin(), points.end());
     }
     return all;
 }
@@ -146,21 +133,21 @@ TEST(SurfaceBand, IsCompleteForTrianglesInThePlanesOfTheAxes) {
 TEST(SurfaceBand, KnowsTheDistanceAndTheSide) {
     const Mesh mesh = test::sphere(60, 1.0f, glm::vec3(3.0f, 0.0f, 0.0f));
     const SurfaceBand band = surface_band(mesh, 0.04);
-    const Points points = points_of(mesh, band);
+    const std::vector<MeshPoint> points = points_of(mesh, band);
+    ASSERT_EQ(points.size(), band.voxels());
     for_each_voxel(band, [&](const glm::ivec3& v, std::uint64_t row) {
         const double expected =
             glm::length(glm::dvec3(band.position(v)) - glm::dvec3(3.0, 0.0, 0.0)) - 1.0;
         constexpr double sagitta = 0.003;  // of the mesh
         if (std::abs(expected) < 0.04) {
-            EXPECT_NEAR(points.distance[row], expected, sagitta);
+            EXPECT_NEAR(band.distance[row], expected, sagitta);
         } else {  // the nearest triangle may not cross a cell around the voxel
-            EXPECT_EQ(points.distance[row] > 0.0f, expected > 0.0);
-            EXPECT_GT(std::abs(points.distance[row]), std::abs(expected) - sagitta);
-            EXPECT_LT(std::abs(points.distance[row]), 0.04 * std::sqrt(3.0) + sagitta);
+            EXPECT_EQ(band.distance[row] > 0.0f, expected > 0.0);
+            EXPECT_GT(std::abs(band.distance[row]), std::abs(expected) - sagitta);
+            EXPECT_LT(std::abs(band.distance[row]), 0.04 * std::sqrt(3.0) + sagitta);
         }
-        const glm::vec2 b = points.barycentrics[row];
-        const glm::vec3 nearest = mesh_point(mesh, points.triangle[row], b.x, b.y).P;
-        EXPECT_NEAR(glm::length(nearest - band.position(v)), std::abs(points.distance[row]), 1e-5);
+        EXPECT_NEAR(glm::length(points[row].P - band.position(v)), std::abs(band.distance[row]),
+                    1e-5);
     });
 }
 
@@ -170,13 +157,12 @@ TEST(SurfaceBand, SignsTheSidesOfSharpEdges) {
     mesh.P = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     const SurfaceBand band = surface_band(mesh, 0.03);
-    const Points points = points_of(mesh, band);
     for_each_voxel(band, [&](const glm::ivec3& v, std::uint64_t row) {
         const glm::vec3 p = band.position(v);
         const double inside = std::min(
             {double(p.x), double(p.y), double(p.z), (1.0 - p.x - p.y - p.z) / std::sqrt(3.0)});
         if (std::abs(inside) > 1e-5) {
-            EXPECT_EQ(points.distance[row]<0.0f, inside> 0.0) << p.x << ' ' << p.y << ' ' << p.z;
+            EXPECT_EQ(band.distance[row]<0.0f, inside> 0.0) << p.x << ' ' << p.y << ' ' << p.z;
         }
     });
 }
@@ -200,13 +186,14 @@ TEST(SurfaceBand, IsTheSameForAnyNumberOfThreads) {
         return surface_band(mesh, 0.03);
     };
     const SurfaceBand one = band_with(1), four = band_with(4);
-    EXPECT_EQ(one.triangles, four.triangles);
+    EXPECT_EQ(one.distance, four.distance);
+    EXPECT_EQ(one.triangle, four.triangle);
+    EXPECT_EQ(one.cells, four.cells);
     ASSERT_EQ(one.blocks.size(), four.blocks.size());
     for (std::size_t b = 0; b < one.blocks.size(); ++b) {
         EXPECT_EQ(one.blocks[b].origin, four.blocks[b].origin);
         EXPECT_EQ(one.blocks[b].active, four.blocks[b].active);
-        EXPECT_EQ(one.near[b].first, four.near[b].first);
-        EXPECT_EQ(one.near[b].count, four.near[b].count);
+        EXPECT_EQ(one.blocks[b].first, four.blocks[b].first);
     }
 }
 

@@ -4,7 +4,6 @@
 
 #include <glm/glm.hpp>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,36 +12,23 @@
 
 namespace estara {
 
-/// Voxels and cells as in GridLevel, and what their nearest points are found from.
+/// Voxels and cells as in GridLevel, and for each voxel the nearest of the triangles that cross one
+/// of the eight cells around it.
 struct SurfaceBand {
-    /// Part of `triangles`.
-    struct Near {
-        std::uint64_t first = 0;
-        std::uint32_t count = 0;
-    };
-
     double voxel_size = 1.0;  ///< object space
     glm::dvec3 origin{0.0};   ///< object position of voxel (0, 0, 0)
-    double slack = 0.0;  ///< how much larger than a voxel cells are taken, on each side, in voxels
     std::vector<Block> blocks;
-    std::vector<BlockMask> cells;          ///< by block
-    std::vector<Near> near;                ///< by block: those that may cross a cell around a voxel
-    std::vector<std::uint32_t> triangles;  ///< ascending within a block
+    std::vector<BlockMask> cells;  ///< by block
+    /// By row: signed, object space, negative behind the surface. The distance to the mesh itself
+    /// where that is up to a voxel; beyond, it may be larger: what does not cross a cell around is
+    /// not seen. Off by at most a hundred-thousandth of a voxel and what object space rounds.
+    std::vector<float> distance;
+    std::vector<std::uint32_t> triangle;  ///< by row: of the mesh
 
-    std::uint64_t voxels() const noexcept {
-        return blocks.empty() ? 0
-                              : blocks.back().first + std::uint64_t(blocks.back().active.count());
-    }
+    std::uint64_t voxels() const noexcept { return distance.size(); }
     glm::vec3 position(const glm::ivec3& voxel) const noexcept {
         return glm::vec3(origin + voxel_size * glm::dvec3(voxel));
     }
-};
-
-/// The surface points nearest to the voxels of a block, in bit order.
-struct NearestPoints {
-    std::array<float, 512> distance;
-    std::array<std::uint32_t, 512> triangle;
-    std::array<glm::vec2, 512> barycentrics;  ///< b1, b2
 };
 
 /// Error if surface_band() cannot divide the mesh into such voxels; costs next to nothing.
@@ -62,17 +48,10 @@ void check_voxel_size(const Mesh& mesh, double voxel_size);
 ///                    coordinates, or the mesh spans more than 2^17 voxels
 SurfaceBand surface_band(const Mesh& mesh, double voxel_size);
 
-/// The signed distances of a block's voxels to the nearest of the triangles that cross one of the
-/// eight cells around, object space; negative behind the surface. The distance to the mesh itself
-/// where that is up to a voxel; beyond, it may be larger: what does not cross a cell around is not
-/// seen.
-/// @param distances  becomes one for each active voxel, in bit order
-void nearest_distances(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
-                       float* distances) noexcept;
-
-/// Likewise, with the points that these are the distances to.
+/// The points of band.triangle that are nearest to a block's voxels.
+/// @param points  becomes one for each active voxel, in bit order
 void nearest_points(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
-                    NearestPoints& points) noexcept;
+                    std::vector<MeshPoint>& points);
 
 /// Whether the mesh bounds a solid: each edge has one triangle on either side, wound alike.
 /// Vertices at the same position count as one.
