@@ -43,7 +43,7 @@ BakeEstimate estimate_bake(const Mesh& mesh, const ShaderInfo& shader, double vo
     check_voxel_size(mesh, voxel_size);
     const double coarse = std::max(voxel_size, double(bounds(mesh).diagonal()) / 128.0);
     const double scale = coarse / voxel_size;
-    const double voxels = double(surface_band(mesh, coarse).voxels()) * scale * scale;
+    const double voxels = double(count_voxels(mesh, coarse)) * scale * scale;
     const double bytes = voxels * (bytes_per_voxel + bytes_per_float * shader.baked_floats) +
                          std::min(voxels * checking_bytes_per_voxel, most_checking_bytes) +
                          bytes_per_triangle * double(mesh.triangles.size());

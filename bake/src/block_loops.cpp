@@ -79,7 +79,7 @@ constexpr std::array<std::uint32_t, 8> bit_of{1, 2, 4, 8, 16, 32, 64, 128};
 /// @param x, y    [0, 8)
 ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, std::uint32_t triangle, int x, int y,
                              std::uint32_t voxels, NearestTriangles& nearest) noexcept {
-    std::array<float, 8> at;  // the planes' numbers at (x, y, 0)
+    std::array<float, 8> at;  // the planes' numbers at (x, y), z in the middle
     for (std::size_t k = 0; k < 8; ++k) {
         at[k] = planes.w[k] + planes.x[k] * (float(x) - middle) + planes.y[k] * (float(y) - middle);
     }
@@ -114,9 +114,10 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, std::uint32_t triangl
         const bool closer = distance < distances[i] - tie;
         const bool tied = distance <= distances[i] + tie;
         const bool faces_more = std::fabs(facing) > std::fabs(heights[i]);
-        const bool take = (closer | (tied & faces_more)) & ((voxels & bit_of[i]) != 0);
-        // The smaller one of two that tie, so that many ties do not add up.
-        kept[0][i] = take ? smaller(distance, distances[i]) : distances[i];
+        const bool asked = (voxels & bit_of[i]) != 0;
+        const bool take = (closer | (tied & faces_more)) & asked;
+        // Of two that tie the smaller one, whichever triangle is kept.
+        kept[0][i] = asked ? smaller(distance, distances[i]) : distances[i];
         kept[1][i] = take ? facing : heights[i];
         kept_triangle[i] = take ? triangle : triangles[i];
     }
@@ -128,7 +129,7 @@ ESTARA_KERNEL void visit_row(const TrianglePlanes& planes, std::uint32_t triangl
 }
 
 ESTARA_KERNEL void voxelize_loop(const BlockInput& in, CellRows& cells,
-                                 NearestTriangles& nearest) noexcept {
+                                 NearestTriangles* nearest) noexcept {
     const glm::dvec3 center = glm::dvec3(in.origin) + double(middle);
     for (const std::uint32_t t : in.triangles) {
         std::array<glm::dvec3, 3> v = in.lattice.corners(in.mesh, t);
@@ -140,6 +141,7 @@ ESTARA_KERNEL void voxelize_loop(const BlockInput& in, CellRows& cells,
                 cells.rows[std::size_t(x)][y] |= met.rows[std::size_t(x)][y];
             }
         }
+        if (nearest == nullptr) continue;
         for (glm::dvec3& corner : v) corner -= center;
         const TrianglePlanes planes(v);
         for (int x = std::max(xs.lo - 1, 0); x <= std::min(xs.hi, 7); ++x) {
@@ -147,7 +149,7 @@ ESTARA_KERNEL void voxelize_loop(const BlockInput& in, CellRows& cells,
             for (std::size_t y = 0; y < 8; ++y) voxels[y] = met.corners(std::size_t(x), y);
             for (int y = 0; y < 8; ++y) {
                 if (voxels[std::size_t(y)] == 0) continue;
-                visit_row(planes, t, x, y, voxels[std::size_t(y)], nearest);
+                visit_row(planes, t, x, y, voxels[std::size_t(y)], *nearest);
             }
         }
     }
@@ -155,9 +157,9 @@ ESTARA_KERNEL void voxelize_loop(const BlockInput& in, CellRows& cells,
 
 }  // namespace
 
-void voxelize(const BlockInput& in, CellRows& cells, NearestTriangles& nearest,
+void voxelize(const BlockInput& in, CellRows& cells, NearestTriangles* nearest,
               InstructionSet limit) noexcept {
-    wide([&in, &cells, &nearest]() ESTARA_LOOP { voxelize_loop(in, cells, nearest); }, limit);
+    wide([&in, &cells, nearest]() ESTARA_LOOP { voxelize_loop(in, cells, nearest); }, limit);
 }
 
 }  // namespace estara

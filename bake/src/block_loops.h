@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "estara/shaders/kernel.h"
 #include "estara/shaders/registry.h"
 #include "lattice.h"
 
@@ -27,7 +28,7 @@ struct alignas(32) CellRows {
     std::array<std::array<std::uint16_t, 16>, side> rows{};
 
     /// Bit z is voxel (x, y, z): whether it is a corner of a cell here.
-    unsigned corners(std::size_t x, std::size_t y) const noexcept {
+    ESTARA_KERNEL unsigned corners(std::size_t x, std::size_t y) const noexcept {
         const unsigned cells = rows[x][y] | rows[x][y + 1] | rows[x + 1][y] | rows[x + 1][y + 1];
         return (cells | (cells >> 1)) & 0xffu;
     }
@@ -51,10 +52,12 @@ struct alignas(64) NearestTriangles {
 /// vertex) it is the one that faces the voxel most: the others may see it from behind although it
 /// is in front of the surface.
 ///
-/// Distances are within 5e-6 voxels (float, from the block's middle); what differs by less than
-/// 1e-5 is equally near. Runs the widest instruction set of the machine, but none wider than
-/// `limit`; the bits are the same on all of them.
-void voxelize(const BlockInput& in, CellRows& cells, NearestTriangles& nearest,
+/// Distances are the smallest that there are within 5e-6 voxels (float, from the block's middle),
+/// of triangles that are wider than a millionth of their length; what differs by less than 1e-5 is
+/// equally near. Runs the widest instruction set of the machine, but none wider than `limit`; the
+/// bits are the same on all of them.
+/// @param nearest  null: cells alone
+void voxelize(const BlockInput& in, CellRows& cells, NearestTriangles* nearest,
               InstructionSet limit = InstructionSet::avx512) noexcept;
 
 }  // namespace estara

@@ -78,6 +78,7 @@ private:
     /// Light at the surface point nearest to every voxel; nothing is masked yet.
     void fill(double voxel_size) {
         SurfaceBand band = surface_band(m_mesh, voxel_size);
+        band.distance = {};  // the grid of colours has them
         m_result.voxel_size = voxel_size;
         m_result.origin = band.origin;
         m_result.levels.assign(1, {});

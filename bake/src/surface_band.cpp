@@ -1,11 +1,14 @@
 #include "estara/bake/surface_band.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_pipeline.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "block_loops.h"
 #include "block_triangles.h"
@@ -70,7 +73,15 @@ BlockMask corners_of(const CellRows& rows) noexcept {
     return mask;
 }
 
-/// Blocks that are voxelized one after another. A fixed number, so that threads change nothing.
+/// Block b of those that triangles have been sorted into.
+BlockInput input(const Mesh& mesh, const Lattice& lattice, const BlockTriangles& sorted,
+                 std::size_t b) noexcept {
+    return {mesh, lattice, 8 * sorted.blocks[b],
+            std::span(sorted.triangles)
+                .subspan(sorted.first[b], sorted.first[b + 1] - sorted.first[b])};
+}
+
+/// Blocks that are voxelized one after another: half a millisecond of work.
 constexpr std::size_t chunk_size = 64;
 
 /// What a chunk of blocks adds to the band.
@@ -102,10 +113,7 @@ Chunk voxelize_chunk(const Mesh& mesh, const Lattice& lattice, const BlockTriang
     for (std::size_t b = begin; b < end; ++b) {
         CellRows rows;
         nearest.clear();
-        voxelize({mesh, lattice, 8 * sorted.blocks[b],
-                  std::span(sorted.triangles)
-                      .subspan(sorted.first[b], sorted.first[b + 1] - sorted.first[b])},
-                 rows, nearest);
+        voxelize(input(mesh, lattice, sorted, b), rows, &nearest);
         const BlockMask active = corners_of(rows);
         if (!active.any()) continue;  // the block's bounds met, its cells did not
         chunk.blocks.push_back({8 * sorted.blocks[b], active, chunk.distance.size()});
@@ -158,11 +166,11 @@ SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
         next += chunk_size;
         return begin;
     };
-    const auto voxelize = [&](std::size_t begin) {
+    const auto fill_chunk = [&](std::size_t begin) {
         return voxelize_chunk(mesh, lattice, sorted, begin, std::min(begin + chunk_size, count));
     };
     const auto add = [&](const Chunk& chunk) {
-        const std::uint64_t rows = band.voxels();
+        const std::uint64_t rows = band.distance.size();
         for (Block block : chunk.blocks) {
             block.first += rows;
             band.blocks.push_back(block);
@@ -171,28 +179,44 @@ SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
         band.distance.insert(band.distance.end(), chunk.distance.begin(), chunk.distance.end());
         band.triangle.insert(band.triangle.end(), chunk.triangle.begin(), chunk.triangle.end());
     };
-    // In this way chunks are few at any time. All of them kept until the band's size is known would
-    // be as much memory as the band, which is not given back to the system.
+    // Few, and taken in at once: if all of them were kept until the band's size is known, they
+    // would take as much memory as the band, and the heap would not give it back.
     const auto chunks_at_a_time = 2 * std::size_t(tbb::this_task_arena::max_concurrency());
     using tbb::filter_mode, tbb::make_filter;
     tbb::parallel_pipeline(
         chunks_at_a_time,
         make_filter<void, std::size_t>(filter_mode::serial_in_order, begin_chunk) &
-            make_filter<std::size_t, Chunk>(filter_mode::parallel, voxelize) &
+            make_filter<std::size_t, Chunk>(filter_mode::parallel, fill_chunk) &
             make_filter<Chunk, void>(filter_mode::serial_in_order, add));
     return band;
 }
 
+std::uint64_t count_voxels(const Mesh& mesh, double voxel_size) {
+    const Lattice lattice = make_lattice(mesh, voxel_size);
+    const BlockTriangles sorted = triangles_by_block(mesh, lattice);
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, sorted.blocks.size()), std::uint64_t{0},
+        [&](const tbb::blocked_range<std::size_t>& blocks, std::uint64_t voxels) {
+            for (std::size_t b = blocks.begin(); b < blocks.end(); ++b) {
+                CellRows rows;
+                voxelize(input(mesh, lattice, sorted, b), rows, nullptr);
+                voxels += std::uint64_t(corners_of(rows).count());
+            }
+            return voxels;
+        },
+        std::plus<>());
+}
+
 void nearest_points(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
                     std::vector<MeshPoint>& points) {
-    const Lattice lattice{band.voxel_size, band.origin, 0.0};
     points.clear();
     const Block& of = band.blocks[block];
     const std::uint32_t* const triangles = band.triangle.data() + of.first;
     for_each_bit(of.active, [&](int x, int y, int z) {
         const std::uint32_t triangle = triangles[points.size()];
-        const glm::vec2 b12(nearest_on_triangle(glm::dvec3(of.origin + glm::ivec3(x, y, z)),
-                                                lattice.corners(mesh, triangle)));
+        const glm::vec2 b12(
+            nearest_on_triangle(glm::dvec3(of.origin + glm::ivec3(x, y, z)),
+                                triangle_corners(mesh, triangle, band.origin, band.voxel_size)));
         points.push_back(mesh_point(mesh, triangle, b12.x, b12.y));
     });
 }

@@ -20,8 +20,8 @@ namespace estara {
 /// nearby: numbers that are small in the end are sums of terms as large as the point's coordinates,
 /// however large the triangle is.
 ///
-/// A degenerate triangle has no normal: it lies in any plane through its longest edge, has no
-/// inside and no side.
+/// A degenerate triangle, thinner than 1e-12 of its length, has no normal: it lies in any plane
+/// through its longest edge, has no inside and no side, and all its edges run along that one.
 struct alignas(32) TrianglePlanes {
     static constexpr int height = 0, beside = 1, along = 4, count = 7;
 
@@ -44,7 +44,8 @@ struct alignas(32) TrianglePlanes {
         }
         glm::dvec3 normal = glm::cross(edge[0], edge[1]);
         const double area2 = std::sqrt(glm::dot(normal, normal));
-        if (area2 > 1e-12 * most * most) {
+        const bool degenerate = !(area2 > 1e-12 * most * most);
+        if (!degenerate) {
             normal *= 1.0 / area2;
             inside = 0.0f;
             faces = 1.0f;
@@ -58,11 +59,12 @@ struct alignas(32) TrianglePlanes {
         }
         set(height, normal, v[0]);
         for (std::size_t e = 0; e < 3; ++e) {
-            const glm::dvec3 way = length[e] > 0.0 ? edge[e] * inverse[e] : longest;
+            const glm::dvec3 way = degenerate ? longest : edge[e] * inverse[e];
             set(beside + int(e), glm::cross(way, normal), v[e]);
             set(along + int(e), way, glm::dvec3(0.0));
-            start[e] = float(glm::dot(way, v[e]));
-            end[e] = float(glm::dot(way, v[(e + 1) % 3]));
+            const double from = glm::dot(way, v[e]), to = glm::dot(way, v[(e + 1) % 3]);
+            start[e] = float(std::min(from, to));
+            end[e] = float(std::max(from, to));
         }
     }
 

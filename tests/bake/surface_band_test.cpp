@@ -92,6 +92,8 @@ TEST(SurfaceBand, HasNoVoxelWithoutASurfaceCellBesideIt) {
         }
     }
     EXPECT_EQ(active_voxels(band), corners);
+    EXPECT_EQ(band.voxels(), corners.size());
+    EXPECT_EQ(count_voxels(test::sphere(30, 1.0f), 0.05), corners.size());
     // A cell that the sphere crosses has a corner no further from it than its half diagonal, .87
     // voxels; the corner opposite is at most a diagonal further.
     for_each_voxel(band, [&](const glm::ivec3& v, std::uint64_t) {
