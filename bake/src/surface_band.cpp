@@ -154,7 +154,7 @@ glm::dvec2 nearest_on_triangle(const glm::dvec3& p, const std::array<glm::dvec3,
 
 void check_voxel_size(const Mesh& mesh, double voxel_size) { make_lattice(mesh, voxel_size); }
 
-SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
+SurfaceBand surface_band(const Mesh& mesh, double voxel_size, bool with_triangles) {
     const Lattice lattice = make_lattice(mesh, voxel_size);
     const BlockTriangles sorted = triangles_by_block(mesh, lattice);
     const std::size_t count = sorted.blocks.size();
@@ -177,6 +177,7 @@ SurfaceBand surface_band(const Mesh& mesh, double voxel_size) {
         }
         band.cells.insert(band.cells.end(), chunk.cells.begin(), chunk.cells.end());
         band.distance.insert(band.distance.end(), chunk.distance.begin(), chunk.distance.end());
+        if (!with_triangles) return;
         band.triangle.insert(band.triangle.end(), chunk.triangle.begin(), chunk.triangle.end());
     };
     // Few, and taken in at once: if all of them were kept until the band's size is known, they

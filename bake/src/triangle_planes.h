@@ -23,7 +23,7 @@ namespace estara {
 /// A degenerate triangle, thinner than 1e-12 of its length, has no normal: it lies in any plane
 /// through its longest edge, has no inside and no side, and all its edges run along that one.
 struct alignas(32) TrianglePlanes {
-    static constexpr int height = 0, beside = 1, along = 4, count = 7;
+    static constexpr int height = 0, beside = 1, along = 4;
 
     /// Number k at p is x[k] p.x + y[k] p.y + z[k] p.z + w[k].
     std::array<float, 8> x{}, y{}, z{}, w{};

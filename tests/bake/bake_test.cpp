@@ -79,6 +79,7 @@ TEST(Bake, HoldsTheDistanceOfEachVoxel) {
                 ++row;
             });
         }
+        EXPECT_EQ(grid.distance, surface_band(mesh, 0.05).distance);
         EXPECT_EQ(row, grid.distance.size());
     }
 }

@@ -20,10 +20,9 @@ template <class Function>
 void for_each_voxel(const SurfaceBand& band, Function&& function) {
     for (const Block& block : band.blocks) {
         std::uint64_t row = block.first;
-        for (int bit = 0; bit < 512; ++bit) {
-            if (block.active.test(bit))
-                function(block.origin + glm::ivec3(bit >> 6, (bit >> 3) & 7, bit & 7), row++);
-        }
+        for_each_bit(block.active, [&](int x, int y, int z) {
+            function(block.origin + glm::ivec3(x, y, z), row++);
+        });
     }
 }
 

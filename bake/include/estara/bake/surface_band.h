@@ -23,7 +23,7 @@ struct SurfaceBand {
     /// not seen. Off by at most 5e-6 voxels and what object space rounds (triangles thinner than a
     /// millionth of their length: by more).
     std::vector<float> distance;
-    std::vector<std::uint32_t> triangle;  ///< by row: of the mesh; what nearest_points() needs
+    std::vector<std::uint32_t> triangle;  ///< by row: of the mesh; empty if not asked for
 
     std::uint64_t voxels() const noexcept {
         return blocks.empty() ? 0
@@ -49,12 +49,13 @@ void check_voxel_size(const Mesh& mesh, double voxel_size);
 /// result does not depend on the number of threads.
 /// @param voxel_size  object space, > 0. Error if it is below what floats resolve at the mesh's
 ///                    coordinates, or the mesh spans more than 2^17 voxels
-SurfaceBand surface_band(const Mesh& mesh, double voxel_size);
+/// @param with_triangles  they are kept: what nearest_points() needs
+SurfaceBand surface_band(const Mesh& mesh, double voxel_size, bool with_triangles = true);
 
 /// How many voxels surface_band() has, in less time and without its memory. Error: likewise.
 std::uint64_t count_voxels(const Mesh& mesh, double voxel_size);
 
-/// The points of band.triangle that are nearest to a block's voxels.
+/// The points of band.triangle, which must be there, that are nearest to a block's voxels.
 /// @param points  becomes one for each active voxel, in bit order
 void nearest_points(const Mesh& mesh, const SurfaceBand& band, std::size_t block,
                     std::vector<MeshPoint>& points);
