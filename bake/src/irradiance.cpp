@@ -30,13 +30,9 @@ constexpr std::size_t batch = SurfaceSampler::batch_size;
 constexpr double bytes_per_voxel = 60.0;
 
 int only_instance(const Scene& scene, int object) {
-    const std::vector<int> instances = instances_of(scene, object);
-    if (instances.size() != 1) {
-        throw Error(
-            fmt::format("it stands in the scene {} times, and light differs from place to place",
-                        instances.size()));
-    }
-    return instances.front();
+    const std::string why = why_no_static_light(scene, object);
+    if (!why.empty()) throw Error(why);
+    return instances_of(scene, object).front();
 }
 
 /// One object's light, as it is baked and looked up.

@@ -59,17 +59,15 @@ BoundedBake bake_within_error(const Job& job, const Options& options, std::uint6
                          max_memory, options.seed, begin);
 }
 
-/// The scene's light on a job's object, or nothing if it stands in the scene more than once.
+/// The scene's light on a job's object, or nothing, with a word why, if it cannot be baked.
 std::optional<TextureGrid> bake_light(const Job& job, const TextureGrid& color, const Scene& scene,
                                       const RayScene& rays, const Options& options,
                                       std::uint64_t max_memory, const Output& output) {
     const int object = int(job.object - scene.objects.data());
-    const std::size_t places = instances_of(scene, object).size();
-    if (places != 1) {
-        output.message(
-            fmt::format("warning: object \"{}\" stands in the scene {} times, and light differs "
-                        "from place to place: it is baked without",
-                        job.object->name, places));
+    const std::string why = why_no_static_light(scene, object);
+    if (!why.empty()) {
+        output.message(fmt::format("warning: object \"{}\": {}: it is baked without light",
+                                   job.object->name, why));
         return std::nullopt;
     }
     IrradianceSettings settings;
@@ -223,7 +221,7 @@ void bake_all_jobs(const std::vector<Job>& jobs, const Scene& scene, const Optio
     std::uint64_t held = program_bytes;  // and by the grids that are done
     const auto left = [&] { return options.max_memory > held ? options.max_memory - held : 0; };
     std::unique_ptr<RayScene> rays;
-    if (options.irradiance) rays = std::make_unique<RayScene>(scene);
+    if (options.irradiance) rays = std::make_unique<RayScene>(scene, near_origin(scene));
     for (const Job& job : jobs) {
         bakes.push_back(naming(job, [&] { return bake_job(job, options, left()); }));
         held += bakes.back().bytes;

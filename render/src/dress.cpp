@@ -106,12 +106,16 @@ std::unique_ptr<ReuseCache> make_cache(const Scene& scene, const Options& option
         return nullptr;
     }
     const int lights = keeps_light(scene, options) ? int(scene.lights.size()) : -1;
-    std::vector<RecordLayout> layouts;
-    for (const ObjectShading& one : shading) {
-        layouts.push_back(record_layout(one.shader->info(), lights));
-    }
     std::vector<int> objects;
-    for (const Instance& instance : scene.instances) objects.push_back(instance.object);
+    std::vector<bool> bent(scene.objects.size(), false);
+    for (const Instance& instance : scene.instances) {
+        objects.push_back(instance.object);
+        if (bends(scene, instance)) bent[std::size_t(instance.object)] = true;
+    }
+    std::vector<RecordLayout> layouts;
+    for (std::size_t o = 0; o < shading.size(); ++o) {
+        layouts.push_back(record_layout(shading[o].shader->info(), lights, bent[o]));
+    }
     return std::make_unique<ReuseCache>(options.cache_memory, std::move(layouts),
                                         std::move(objects));
 }

@@ -12,9 +12,10 @@ namespace {
 /// What pixels' centres see.
 class SeenCentres {
 public:
-    SeenCentres(const Scene& scene, RayScene& rays, int camera, double time, int width, int height)
+    SeenCentres(const Scene& scene, RayScene& rays, int camera, double time,
+                const glm::dvec3& origin, int width, int height)
         : m_scene(scene),
-          m_pose(pose_at(scene, time)),
+          m_pose(pose_at(scene, time, origin)),
           m_eye(pinhole_pose(scene, scene.cameras[std::size_t(camera)], m_pose)),
           m_width(width),
           m_height(height),
@@ -33,14 +34,14 @@ public:
     const Hit& hit(int x, int y) const {
         return m_hits[std::size_t(y) * std::size_t(m_width) + std::size_t(x)];
     }
-    glm::vec3 P_object(const Hit& hit) const {
+    /// Where this picture has what a ray has met in this one or another.
+    glm::vec3 world(const Hit& hit) const {
+        const std::vector<glm::vec3>& P = placed_vertices(m_scene, m_pose, hit.instance);
         const int object = m_scene.instances[hit.instance].object;
-        return mesh_point(m_scene.objects[std::size_t(object)].mesh, hit.triangle, hit.b1, hit.b2)
-            .P;
-    }
-    glm::vec3 world(const Hit& hit, const glm::vec3& P_object) const {
-        const int node = m_scene.instances[hit.instance].node;
-        return glm::vec3(m_pose.world_from_node[std::size_t(node)] * glm::vec4(P_object, 1.0f));
+        const glm::uvec3 t = m_scene.objects[std::size_t(object)].mesh.triangles[hit.triangle];
+        const glm::vec3 placed =
+            (1.0f - hit.b1 - hit.b2) * P[t.x] + hit.b1 * P[t.y] + hit.b2 * P[t.z];
+        return glm::vec3(m_pose.world_from_instance[hit.instance] * glm::vec4(placed, 1.0f));
     }
     glm::vec3 project(const glm::vec3& P) const { return m_eye.project(P, m_width, m_height); }
     float footprint(const glm::vec3& P) const {
@@ -76,8 +77,10 @@ glm::vec3 sampled(const Film& film, const glm::vec2& place) {
 
 std::vector<glm::vec2> motion(const Scene& scene, RayScene& rays, int camera, double before,
                               double now, int width, int height) {
-    const SeenCentres old(scene, rays, camera, before, width, height);
-    const SeenCentres fresh(scene, rays, camera, now, width, height);
+    // One origin for both: what stands still stays where it is.
+    const glm::dvec3 origin = place_of(scene, scene.cameras[std::size_t(camera)].node, now);
+    const SeenCentres old(scene, rays, camera, before, origin, width, height);
+    const SeenCentres fresh(scene, rays, camera, now, origin, width, height);
     const glm::vec2 unknown(std::numeric_limits<float>::quiet_NaN());
     std::vector<glm::vec2> places(std::size_t(width) * std::size_t(height), unknown);
     constexpr float near = 4.0f;  // pixels; a surface aslant spreads over some
@@ -85,7 +88,7 @@ std::vector<glm::vec2> motion(const Scene& scene, RayScene& rays, int camera, do
         for (int x = 0; x < width; ++x) {
             const Hit& hit = fresh.hit(x, y);
             if (hit.instance == Hit::none) continue;
-            const glm::vec3 P_object = fresh.P_object(hit), P = old.world(hit, P_object);
+            const glm::vec3 P = old.world(hit);
             const glm::vec3 place = old.project(P);
             if (!(place.z > 0.0f && place.x >= 0.5f && place.x < float(width) - 0.5f &&
                   place.y >= 0.5f && place.y < float(height) - 0.5f)) {
@@ -97,8 +100,7 @@ std::vector<glm::vec2> motion(const Scene& scene, RayScene& rays, int camera, do
             for (int k = 0; k < 4; ++k) {
                 const Hit& other = old.hit(a.x + (k & 1), a.y + (k >> 1));
                 same = same && other.instance == hit.instance &&
-                       glm::distance(old.world(other, old.P_object(other)), P) <=
-                           near * old.footprint(P);
+                       glm::distance(old.world(other), P) <= near * old.footprint(P);
                 if (!same) break;
             }
             if (same) {

@@ -27,6 +27,9 @@ FrameStatistics& FrameStatistics::operator+=(const FrameStatistics& other) noexc
     irradiance_lookups += other.irradiance_lookups;
     misses += other.misses;
     bad_pixels += other.bad_pixels;
+    geometry_seconds += other.geometry_seconds;
+    refits += other.refits;
+    rebuilds += other.rebuilds;
     lit += other.lit;
     shadow_seconds += other.shadow_seconds;
     reuse += other.reuse;
@@ -166,12 +169,17 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
                                       const std::function<void()>& tile_done, ReuseCache* cache) {
     const Stopwatch whole;
     Impl& my = *m_impl;
-    const Pose pose = pose_at(my.scene, time);
+    const SceneCamera& scene_camera = my.scene.cameras[std::size_t(camera)];
+    const glm::dvec3 origin = place_of(my.scene, scene_camera.node, time);
+    const Pose pose = pose_at(my.scene, time, origin);
     my.rays.set_pose(pose);
     const std::vector<PosedInstance> instances = pose_instances(my.scene, pose);
     const std::vector<PosedLight> lights = posed_lights(my.scene, pose);
-    const PinholePose eye = pinhole_pose(my.scene, my.scene.cameras[std::size_t(camera)], pose);
+    const PinholePose eye = pinhole_pose(my.scene, scene_camera, pose);
     FrameStatistics statistics;
+    statistics.geometry_seconds = my.rays.last_update().seconds;
+    statistics.refits = std::uint64_t(my.rays.last_update().refits);
+    statistics.rebuilds = std::uint64_t(my.rays.last_update().rebuilds);
     if (cache != nullptr) {
         if (!my.reprojection) my.reprojection = std::make_unique<Reprojection>(my.settings);
         my.reprojection->start(*cache, eye, instances);
@@ -181,6 +189,7 @@ FrameStatistics FrameRenderer::render(const std::vector<ObjectShading>& shading,
     const FrameContext context{my.scene,
                                my.rays,
                                Camera(eye, my.settings.width, my.settings.height),
+                               origin,
                                instances,
                                lights,
                                shading,

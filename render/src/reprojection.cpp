@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "estara/scenes/program.h"
 #include "estara/shaders/wide.h"
@@ -65,10 +66,16 @@ void Reprojection::start(ReuseCache& cache, const PinholePose& pose,
         Bins& bins = m_bins.local();
         bins.resize(std::size_t(m_tiles.count()));
         for (std::size_t p = first; p < last; ++p) {
-            const ReuseCache::Page& page = cache.page(std::uint32_t(p));
+            ReuseCache::Page& page = cache.page(std::uint32_t(p));
             if (page.instance < 0) continue;
             const PosedInstance& instance = instances[std::size_t(page.instance)];
-            if (!instance.is_there || !may_be_seen(pose, instance, page)) continue;
+            if (!instance.is_there) continue;
+            if (cache.layout(page.instance).bends) {
+                bend(instance, page);
+            } else if (instance.bent) {
+                continue;  // squeezed flat in this frame
+            }
+            if (!may_be_seen(pose, instance, page)) continue;
             m_in_view[p] = 1;
             project(pose, instance, int(p), bins);
         }
@@ -91,6 +98,21 @@ std::uint64_t Reprojection::bytes() const noexcept {
         for (const auto& bin : bins) sum += bin.capacity() * sizeof(std::uint64_t);
     }
     return sum;
+}
+
+/// Moves a page's points to where they are on the mesh as it is bent now.
+void Reprojection::bend(const PosedInstance& instance, ReuseCache::Page& page) const {
+    const RecordLayout layout = m_cache->layout(page.instance);
+    const std::vector<glm::vec3>& vertices = instance.bent ? instance.bent->P : instance.mesh->P;
+    page.low = glm::vec3(std::numeric_limits<float>::infinity());
+    page.high = -page.low;
+    for (int i = 0; i < page.size; ++i) {
+        const Site site = Site::from(page.record(i), layout);
+        const glm::vec3 P = site.of(vertices, instance.mesh->triangles[site.triangle]);
+        for (int c = 0; c < 3; ++c) page.P(c)[i] = P[c];
+        page.low = glm::min(page.low, P);
+        page.high = glm::max(page.high, P);
+    }
 }
 
 /// Whether the ball around a page's points reaches into the view.

@@ -123,6 +123,7 @@ private:
     void in_parallel(std::size_t count, std::size_t grain, const F& f);
     bool may_be_seen(const PinholePose& pose, const PosedInstance& instance,
                      const ReuseCache::Page& page) const noexcept;
+    void bend(const PosedInstance& instance, ReuseCache::Page& page) const;
     void project(const PinholePose& pose, const PosedInstance& instance, int page, Bins& bins);
     void serve_tile(int tile, Sorting& sorting);
     void serve_pixel(std::span<const std::uint64_t> fallen, std::uint64_t* slots,

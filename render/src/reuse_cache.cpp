@@ -18,9 +18,9 @@ int normal_plane(const ShaderInfo& info) noexcept {
     return last_is_normal ? info.baked_floats - 3 : -1;
 }
 
-RecordLayout record_layout(const ShaderInfo& info, int lights) noexcept {
+RecordLayout record_layout(const ShaderInfo& info, int lights, bool bends) noexcept {
     const int normal = normal_plane(info);
-    return {normal < 0 ? info.baked_floats : normal, lights};
+    return {normal < 0 ? info.baked_floats : normal, lights, bends};
 }
 
 ReuseCache::ReuseCache(std::uint64_t bytes, std::vector<RecordLayout> layouts,

@@ -62,7 +62,10 @@ Json json_of(const FrameStatistics& s) {
               {"lookups", s.lookups},
               {"irradiance_lookups", s.irradiance_lookups},
               {"misses", s.misses},
-              {"bad_pixels", s.bad_pixels}};
+              {"bad_pixels", s.bad_pixels},
+              {"geometry_seconds", s.geometry_seconds},
+              {"refits", s.refits},
+              {"rebuilds", s.rebuilds}};
     if (s.reuse.table_bytes > 0) json["cache"] = json_of(s.reuse);
     return json;
 }

@@ -154,13 +154,11 @@ private:
             grid.channels[1].components != 1) {
             return "its channels are not irradiance and irradiance_mask";
         }
-        const std::vector<int> instances = instances_of(m_scene, o);
-        if (instances.size() != 1) {
-            return fmt::format("it stands in the scene {} times", instances.size());
-        }
+        const std::string why = why_no_static_light(m_scene, o);
+        if (!why.empty()) return why;
         const std::string moving = moving_node(m_scene);
         if (!moving.empty()) return fmt::format("\"{}\" moves", moving);
-        if (lights_digest(m_scene, instances.front()) != grid.lights_digest) {
+        if (lights_digest(m_scene, instances_of(m_scene, o).front()) != grid.lights_digest) {
             return "a light or something that casts shadows has changed";
         }
         return "";

@@ -174,6 +174,7 @@ int TileRenderer::sort_by_instance(const FrameContext& frame, const std::uint32_
 
 void TileRenderer::shade_new(const FrameContext& frame, const Group& group, NewRecords& found) {
     interpolate(frame, group);
+    if (frame.instances[group.instance].bent) bend(frame, group);
     place_in_world(frame, group);
     evaluate(frame, group);
     take_normals(frame, group);
@@ -190,11 +191,12 @@ void TileRenderer::shade_new(const FrameContext& frame, const Group& group, NewR
 /// World space: P, V and the distance to the eye.
 void TileRenderer::place_in_world(const FrameContext& frame, const Group& group) {
     const PosedInstance& instance = frame.instances[group.instance];
-    wide([samples = &m_samples, group, m = instance.world_from_object]() ESTARA_LOOP {
+    wide([samples = &m_samples, placed = &placed_P(instance), group,
+          m = instance.world_from_object]() ESTARA_LOOP {
         const glm::vec3 x(m[0]), y(m[1]), z(m[2]), shift(m[3]);
 #pragma GCC ivdep
         for (int j = group.first; j < group.last; ++j) {
-            const glm::vec3 P = at(samples->surface.P, j);
+            const glm::vec3 P = at(*placed, j);
             put(samples->P, j, x * P.x + y * P.y + z * P.z + shift);
         }
     });
@@ -291,12 +293,13 @@ void TileRenderer::turn_normals(const PosedInstance& instance, const Group& grou
     };
     int unusual = 0;  // a square beyond float, or a matrix that is singular: nearly never
     int* const found = &unusual;
+    const Planes* const normals = instance.bent ? &m_samples.N_bent : &m_samples.surface.N;
     wide([=, samples = &m_samples, m = instance.world_from_normal]() ESTARA_LOOP {
         int any = 0;
 #pragma GCC ivdep
         for (int j = group.first; j < group.last; ++j) {
             const glm::vec3 Ng = m * at(samples->Ng_object, j);
-            const glm::vec3 N = m * at(samples->surface.N, j);
+            const glm::vec3 N = m * at(*normals, j);
             const float g = glm::dot(Ng, Ng), n = glm::dot(N, N);
             const bool usual = (g > least_square) & (g < largest_square) & (n > least_square) &
                                (n < largest_square);
@@ -309,7 +312,7 @@ void TileRenderer::turn_normals(const PosedInstance& instance, const Group& grou
     for (int j = group.first; j < group.last; ++j) {
         const glm::vec3 Ng = unit_or(instance.world_from_normal * at(m_samples.Ng_object, j),
                                      m_samples.seen.V[j].vec());
-        const glm::vec3 N = unit_or(instance.world_from_normal * at(m_samples.surface.N, j), Ng);
+        const glm::vec3 N = unit_or(instance.world_from_normal * at(*normals, j), Ng);
         turn(m_samples, j, Ng, N);
     }
 }
@@ -327,6 +330,7 @@ void TileRenderer::take_normals(const FrameContext& frame, const Group& group) {
         const float* const from = m_planes.data() + (plane + c) * capacity;
         std::copy(from + group.first, from + group.last, m_samples.surface.N[c] + group.first);
     }
+    if (frame.instances[group.instance].bent) carry_normals(frame, group);
 }
 
 /// Of the planes, the directions to world space.
@@ -337,6 +341,7 @@ void TileRenderer::turn_directions(const FrameContext& frame, const Group& group
         plane += channel.components;
         if (channel.kind != ChannelKind::direction) continue;
         float* const x = m_planes.data() + first * capacity;
+        if (frame.instances[group.instance].bent) carry_directions(frame, group, x);
         wide([=, m = glm::mat3(frame.instances[group.instance].world_from_object)]() ESTARA_LOOP {
 #pragma GCC ivdep
             for (int j = group.first; j < group.last; ++j) {
@@ -379,6 +384,11 @@ void TileRenderer::find_footprints(const FrameContext& frame, const Group& group
     m_footprints.resize(std::size_t(group.last - group.first));
     for (std::size_t i = 0; i < m_footprints.size(); ++i) {
         m_footprints[i] = m_samples.distance[std::size_t(group.first) + i] * width_at_1;
+    }
+    const BentMesh* const bent = frame.instances[group.instance].bent;
+    if (!bent) return;
+    for (std::size_t i = 0; i < m_footprints.size(); ++i) {
+        m_footprints[i] /= bent->stretch[m_samples.site[std::size_t(group.first) + i].triangle];
     }
 }
 

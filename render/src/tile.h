@@ -38,6 +38,7 @@ struct FrameContext {
     const Scene& scene;
     const RayScene& rays;
     Camera camera;
+    glm::dvec3 origin;  ///< of world space in this frame
     std::span<const PosedInstance> instances;
     std::span<const PosedLight> lights;
     std::span<const ObjectShading> shading;                ///< by object
@@ -113,8 +114,10 @@ private:
     struct alignas(64) Samples {
         int pixel[capacity];    ///< index into m_pixels
         int number[capacity];   ///< in the pattern
-        SurfaceBatch surface;   ///< object space
-        Planes Ng_object;       ///< geometric normal, unit, object space
+        SurfaceBatch surface;   ///< object space, at rest
+        Planes Ng_object;       ///< geometric normal, unit, object space; bent where the mesh is
+        Site site[capacity];    ///< of bent meshes alone, as are the next two
+        Planes P_bent, N_bent;  ///< of the bent mesh: P, and the normal to shade with
         Planes P;               ///< world
         Planes Ng;              ///< world, unit, on the side of the eye
         Plane distance;         ///< to the eye, world units
@@ -157,6 +160,11 @@ private:
     void list_candidates(const FrameContext& frame);
     void aim_at_candidates(const FrameContext& frame);
     void test_candidates(const FrameContext& frame);
+    struct PlacedPoint {
+        glm::vec3 P, Ng;  ///< of the mesh, bent where it is
+    };
+    PlacedPoint placed_point(const FrameContext& frame, std::uint32_t instance,
+                             const float* record) const;
     bool lies_on(const FrameContext& frame, const Listed& point, const Hit& hit,
                  const glm::vec3& P) const;
     Listed& listed(const FrameContext& frame, int pixel, int sample) {
@@ -196,6 +204,13 @@ private:
     void interpolate(const FrameContext& frame, const Group& group);
     MeshPoint mesh_point_of(const FrameContext& frame, const Group& group, int j) const;
     void turn_normals(const PosedInstance& instance, const Group& group);
+    void bend(const FrameContext& frame, const Group& group);
+    void carry_normals(const FrameContext& frame, const Group& group);
+    void carry_directions(const FrameContext& frame, const Group& group, float* x);
+    CarriedFrame carried_frame(const PosedInstance& instance, int j) const;
+    const Planes& placed_P(const PosedInstance& instance) const noexcept {
+        return instance.bent ? m_samples.P_bent : m_samples.surface.P;
+    }
     void evaluate(const FrameContext& frame, const Group& group);
     void look_up(const FrameContext& frame, const Group& group, const ObjectShading& shading);
     void look_up_irradiance(const FrameContext& frame, const Group& group);
@@ -214,7 +229,7 @@ private:
     PlaceMoments places_of(const FrameContext& frame, int pixel) const;
     void resolve(const FrameContext& frame, Film& film);
     void weigh_by_place(const FrameContext& frame);
-    void resolve_aovs(float samples, Film& film);
+    void resolve_aovs(const FrameContext& frame, Film& film);
     const ObjectShading& shading_of(const FrameContext& frame, const Group& group) const;
     ObjectCost& cost_of(const FrameContext& frame, const Group& group);
 

@@ -144,7 +144,7 @@ void TileRenderer::resolve(const FrameContext& frame, Film& film) {
         film.color[film.index(pixel.x, pixel.y)] =
             glm::vec4(at(m_sums.color, p), m_sums.covered[p]);
     }
-    if (frame.settings.aovs.any()) resolve_aovs(samples, film);
+    if (frame.settings.aovs.any()) resolve_aovs(frame, film);
 }
 
 /// Of pixels with recalled samples: sums as if these lay where the pattern's do.
@@ -164,7 +164,8 @@ void TileRenderer::weigh_by_place(const FrameContext& frame) {
     }
 }
 
-void TileRenderer::resolve_aovs(float samples, Film& film) {
+void TileRenderer::resolve_aovs(const FrameContext& frame, Film& film) {
+    const float samples = float(frame.pattern.size());
     const Aovs& aovs = film.aovs;
     for (int p = 0; p < int(m_pixels.size()); ++p) {
         const glm::ivec2 pixel = m_pixels[std::size_t(p)];
@@ -177,7 +178,11 @@ void TileRenderer::resolve_aovs(float samples, Film& film) {
             if (!good && m_sums.bad[p] == 0) ++statistics.bad_pixels;
         }
         if (aovs.normal) film.N[to] = at(m_sums.N, p) / hits;
-        if (aovs.position) film.P[to] = at(m_sums.P, p) / hits;
+        if (aovs.position && m_sums.hits[p] > 0) {
+            film.P[to] = glm::vec3(glm::dvec3(at(m_sums.P, p) / hits) + frame.origin);
+        } else if (aovs.position) {
+            film.P[to] = glm::vec3(0.0f);
+        }
         if (aovs.depth) film.depth[to] = m_sums.depth[p] / hits;
         if (aovs.hit) film.hit[to] = float(m_sums.recalled[p]) / samples;
         if (aovs.age) film.age[to] = float(m_sums.age[p]) / hits;

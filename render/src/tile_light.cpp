@@ -96,8 +96,9 @@ void TileRenderer::recall_visibility(int light) {
 void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
                                  const PosedLight& light) {
     const bool shadow = light.shadow && frame.settings.shadows;
-    wide([samples = &m_samples, reach = &m_reach, group, light, shadow,
-          offset = frame.instances[group.instance].offset]() ESTARA_LOOP {
+    const PosedInstance& instance = frame.instances[group.instance];
+    wide([samples = &m_samples, reach = &m_reach, group, light, shadow, offset = instance.offset,
+          placed = &placed_P(instance)]() ESTARA_LOOP {
 #pragma GCC ivdep
         for (int j = group.first; j < group.last; ++j) {
             const FallingLight falling =
@@ -111,8 +112,7 @@ void TileRenderer::reach_samples(const FrameContext& frame, const Group& group,
         for (int j = group.first; j < group.last; ++j) {
             const glm::vec3 L = at(samples->seen.L, j), Ng = at(samples->Ng, j);
             const float side = glm::dot(Ng, L) < 0.0f ? -1.0f : 1.0f;
-            put(reach->origin, j,
-                offset.from(at(samples->P, j), side * Ng, at(samples->surface.P, j)));
+            put(reach->origin, j, offset.from(at(samples->P, j), side * Ng, at(*placed, j)));
         }
     });
 }

@@ -136,6 +136,20 @@ void TileRenderer::trace_own_rays(const FrameContext& frame) {
     statistics.ray_seconds += time.seconds();
 }
 
+/// A point of the cache on its mesh as that is in this frame.
+TileRenderer::PlacedPoint TileRenderer::placed_point(const FrameContext& frame,
+                                                     std::uint32_t instance,
+                                                     const float* record) const {
+    const PosedInstance& posed = frame.instances[instance];
+    if (posed.bent) {
+        const Site site = Site::from(record, frame.reuse->cache().layout(int(instance)));
+        return {site.of(posed.bent->P, posed.mesh->triangles[site.triangle]),
+                posed.bent->Ng[site.triangle]};
+    }
+    constexpr int Ng = RecordLayout::Ng;
+    return {{record[0], record[1], record[2]}, {record[Ng], record[Ng + 1], record[Ng + 2]}};
+}
+
 /// Whether a point of the cache lies on the surface that a ray has met beside it.
 /// @param P  of the hit, world space
 bool TileRenderer::lies_on(const FrameContext& frame, const Listed& point, const Hit& hit,
@@ -145,9 +159,10 @@ bool TileRenderer::lies_on(const FrameContext& frame, const Listed& point, const
     if (hit.instance != std::uint32_t(point.instance)) return false;
     const PosedInstance& instance = frame.instances[hit.instance];
     const float* const r = point.record;
-    constexpr int N = RecordLayout::Ng;
-    const glm::vec3 n(r[N], r[N + 1], r[N + 2]), P_object(r[0], r[1], r[2]);
-    const glm::vec3& Ng = frame.face_normals[std::size_t(instance.object)][hit.triangle];
+    const auto [P_object, n] = placed_point(frame, hit.instance, r);
+    const glm::vec3& Ng = instance.bent
+                              ? instance.bent->Ng[hit.triangle]
+                              : frame.face_normals[std::size_t(instance.object)][hit.triangle];
     const glm::vec3 way = P - glm::vec3(instance.world_from_object * glm::vec4(P_object, 1.0f));
     const glm::vec3 n_world = instance.world_from_normal * n;
     const float width = most * frame.camera.pixel_angle() * hit.t;
@@ -274,9 +289,9 @@ void TileRenderer::list_candidates(const FrameContext& frame) {
             m_candidates.known[c] = told || trusted ? 1 : 0;
             statistics.reuse.untested += trusted ? 1 : 0;
             m_candidates.blocked[c] = one.blocked ? 1 : 0;
-            put(m_candidates.P_object, c, {record[0], record[1], record[2]});
-            constexpr int Ng = RecordLayout::Ng;
-            put(m_candidates.Ng_object, c, {record[Ng], record[Ng + 1], record[Ng + 2]});
+            const PlacedPoint placed = placed_point(frame, group.instance, record);
+            put(m_candidates.P_object, c, placed.P);
+            put(m_candidates.Ng_object, c, placed.Ng);
         }
     }
 }
@@ -396,7 +411,15 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
                 std::bit_cast<std::uint32_t>(record[layout.sides() + w]);
         }
     }
-    average_seconds(frame, group, layout);
+    if (frame.instances[group.instance].bent) {
+        for (int j = group.first; j < group.last; ++j) {
+            m_samples.site[j] = Site::from(m_candidates.record[m_order[j]], layout);
+        }
+        bend(frame, group);
+        if (normal_plane(shading_of(frame, group).shader->info()) >= 0) carry_normals(frame, group);
+    } else {
+        average_seconds(frame, group, layout);
+    }
     const int lit = layout.is_lit() ? 1 : 0;
     std::fill(m_samples.baked_E + group.first, m_samples.baked_E + group.last, lit);
     std::fill(m_samples.kept + group.first, m_samples.kept + group.last, lit);
@@ -467,7 +490,10 @@ void TileRenderer::place_in_pixels(const FrameContext& frame, const Group& group
 /// The records of new hits, but for their light.
 void TileRenderer::keep(const FrameContext& frame, const Group& group, NewRecords& found) {
     const Stopwatch time;
+    const PosedInstance& instance = frame.instances[group.instance];
     const RecordLayout layout = frame.reuse->cache().layout(int(group.instance));
+    if (instance.bent && !layout.bends) return;  // squeezed flat in this frame
+    const std::vector<glm::vec3>& face_normals = frame.face_normals[std::size_t(instance.object)];
     const auto stride = std::size_t(layout.floats());
     const std::size_t first = found.floats.size();
     found.floats.resize(first + std::size_t(group.last - group.first) * stride);
@@ -480,7 +506,12 @@ void TileRenderer::keep(const FrameContext& frame, const Group& group, NewRecord
         for (int c = 0; c < 3; ++c) {
             to[RecordLayout::P + c] = m_samples.surface.P[c][j];
             to[RecordLayout::N + c] = m_samples.surface.N[c][j];
-            to[RecordLayout::Ng + c] = m_samples.Ng_object[c][j];
+            to[RecordLayout::Ng + c] = instance.bent ? face_normals[m_samples.site[j].triangle][c]
+                                                     : m_samples.Ng_object[c][j];
+        }
+        if (layout.bends) {
+            const int i = m_order[j];
+            Site{m_hits.triangle[i], m_hits.b1[i], m_hits.b2[i]}.put(to, layout);
         }
         for (int k = 0; k < layout.baked; ++k) {
             to[RecordLayout::first_baked + k] = m_planes[std::size_t(k * capacity + j)];

@@ -7,7 +7,7 @@
 #include "glb.h"
 
 #define ESTARA_EXAMPLES(scene) \
-    scene(still_life) scene(tumble) scene(simple) scene(face) scene(face_b) scene(interior)
+    scene(still_life) scene(tumble) scene(bend) scene(simple) scene(face) scene(face_b) scene(interior)
 
 namespace estara::examples {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <glm/gtc/type_precision.hpp>
 #include <numbers>
 
 #include "estara/scenes/error.h"
@@ -45,6 +46,7 @@ struct GlbBuilder::Impl {
     template <class T>
     int add_accessor(const std::vector<T>& values, int component, int type, int target);
     int add_times(const std::vector<float>& times);
+    void set_bounds(int accessor, const std::vector<glm::vec3>& values);
     void animate(int node, const std::string& path, int input, int output);
 };
 
@@ -80,6 +82,16 @@ int GlbBuilder::Impl::add_accessor(const std::vector<T>& values, int component, 
     accessor.count = values.size();
     model.accessors.push_back(accessor);
     return int(model.accessors.size()) - 1;
+}
+
+void GlbBuilder::Impl::set_bounds(int accessor, const std::vector<glm::vec3>& values) {
+    glm::vec3 low(values.front()), high(low);
+    for (const glm::vec3& v : values) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    model.accessors[accessor].minValues = numbers(low);
+    model.accessors[accessor].maxValues = numbers(high);
 }
 
 int GlbBuilder::Impl::add_times(const std::vector<float>& times) {
@@ -131,20 +143,15 @@ int GlbBuilder::add_material(const Material& material) {
     return int(m_impl->model.materials.size()) - 1;
 }
 
-int GlbBuilder::add_mesh(const std::string& name, const Mesh& mesh, int material) {
+int GlbBuilder::add_mesh(const std::string& name, const Mesh& mesh, int material,
+                         const Deformation& bends) {
     tinygltf::Model& model = m_impl->model;
     constexpr int real = TINYGLTF_COMPONENT_TYPE_FLOAT, vertices = TINYGLTF_TARGET_ARRAY_BUFFER;
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.material = material;
     const int positions = m_impl->add_accessor(mesh.P, real, TINYGLTF_TYPE_VEC3, vertices);
-    glm::vec3 low(mesh.P.front()), high(low);
-    for (const glm::vec3& p : mesh.P) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    model.accessors[positions].minValues = numbers(low);
-    model.accessors[positions].maxValues = numbers(high);
+    m_impl->set_bounds(positions, mesh.P);
     primitive.attributes["POSITION"] = positions;
     primitive.attributes["NORMAL"] =
         m_impl->add_accessor(mesh.N, real, TINYGLTF_TYPE_VEC3, vertices);
@@ -156,7 +163,25 @@ int GlbBuilder::add_mesh(const std::string& name, const Mesh& mesh, int material
         std::vector<std::uint32_t>(corners, corners + 3 * mesh.triangles.size()),
         TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
         TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    if (bends.influences.count == 4) {
+        const std::size_t count = mesh.P.size();
+        const auto* joints = reinterpret_cast<const glm::u16vec4*>(bends.influences.joint.data());
+        const auto* weights = reinterpret_cast<const glm::vec4*>(bends.influences.weight.data());
+        primitive.attributes["JOINTS_0"] = m_impl->add_accessor(
+            std::vector<glm::u16vec4>(joints, joints + count),
+            TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, vertices);
+        primitive.attributes["WEIGHTS_0"] = m_impl->add_accessor(
+            std::vector<glm::vec4>(weights, weights + count), real, TINYGLTF_TYPE_VEC4, vertices);
+    }
     tinygltf::Mesh out;
+    for (const MorphTarget& target : bends.targets) {
+        const int moved = m_impl->add_accessor(target.P, real, TINYGLTF_TYPE_VEC3, vertices);
+        m_impl->set_bounds(moved, target.P);
+        primitive.targets.push_back(
+            {{"POSITION", moved},
+             {"NORMAL", m_impl->add_accessor(target.N, real, TINYGLTF_TYPE_VEC3, vertices)}});
+        out.weights.push_back(0.0);
+    }
     out.name = name;
     out.primitives.push_back(primitive);
     model.meshes.push_back(out);
@@ -201,6 +226,18 @@ int GlbBuilder::add_lamp(const Lamp& lamp, const Placement& placement) {
     return node;
 }
 
+void GlbBuilder::add_skin(int node, const std::vector<int>& joints,
+                          const std::vector<glm::mat4>& rest) {
+    std::vector<glm::mat4> joint_from_rest;
+    for (const glm::mat4& m : rest) joint_from_rest.push_back(glm::inverse(m));
+    tinygltf::Skin skin;
+    skin.joints = joints;
+    skin.inverseBindMatrices =
+        m_impl->add_accessor(joint_from_rest, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_MAT4, 0);
+    m_impl->model.skins.push_back(skin);
+    m_impl->model.nodes[node].skin = int(m_impl->model.skins.size()) - 1;
+}
+
 void GlbBuilder::animate_rotation(int node, const std::vector<float>& times,
                                   const std::vector<glm::quat>& values) {
     std::vector<glm::vec4> xyzw;  // glTF's order; glm's own depends on a macro
@@ -217,6 +254,14 @@ void GlbBuilder::animate_translation(int node, const std::vector<float>& times,
     const int output =
         m_impl->add_accessor(values, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 0);
     m_impl->animate(node, "translation", input, output);
+}
+
+void GlbBuilder::animate_weights(int node, const std::vector<float>& times,
+                                 const std::vector<float>& values) {
+    const int input = m_impl->add_times(times);
+    const int output =
+        m_impl->add_accessor(values, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 0);
+    m_impl->animate(node, "weights", input, output);
 }
 
 void GlbBuilder::set_ambient(const glm::dvec3& ambient) {

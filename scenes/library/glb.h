@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "estara/scenes/deformation.h"
 #include "estara/scenes/mesh.h"
 
 namespace estara::examples {
@@ -57,16 +58,24 @@ public:
     /// Each returns the index of a new node, mesh or material.
     int add_node(const std::string& name, const Placement& placement);
     int add_material(const Material& material);
-    int add_mesh(const std::string& name, const Mesh& mesh, int material);
+    /// @param bends  influences of four a vertex, or none
+    int add_mesh(const std::string& name, const Mesh& mesh, int material,
+                 const Deformation& bends = {});
     int add_object(const std::string& name, int mesh, const Placement& placement);
     int add_camera(const std::string& name, double yfov, const Placement& placement);
     int add_lamp(const Lamp& lamp, const Placement& placement);
+
+    /// Lets joints (nodes) carry a node's mesh. @param rest  by joint: where it is at rest
+    void add_skin(int node, const std::vector<int>& joints, const std::vector<glm::mat4>& rest);
 
     /// Linear key frames of a node. @param times  seconds, ascending; as many as values
     void animate_rotation(int node, const std::vector<float>& times,
                           const std::vector<glm::quat>& values);
     void animate_translation(int node, const std::vector<float>& times,
                              const std::vector<glm::vec3>& values);
+    /// @param values  of all morph targets at the first time, then at the second, ...
+    void animate_weights(int node, const std::vector<float>& times,
+                         const std::vector<float>& values);
 
     /// RSL's ambient light.
     void set_ambient(const glm::dvec3& ambient);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "estara/scenes/static_light.h"
 #include "loaders.h"
 
 namespace estara {
@@ -17,35 +18,39 @@ constexpr float elevation = 0.35f;  // 20 degrees from above
 constexpr float margin = 1.05f;     // of the picture around the object
 
 struct Sphere {
-    glm::vec3 center{0.0f};
-    float radius = 1.0f;
+    glm::dvec3 center{0.0};
+    double radius = 1.0;
 };
 
 template <class F>
 void for_each_world_point(const Scene& scene, const Pose& pose, F f) {
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.objects[std::size_t(instance.object)].mesh;
-        const glm::mat4& world = pose.world_from_node[std::size_t(instance.node)];
-        for (const glm::uvec3& t : mesh.triangles) {
-            for (int k = 0; k < 3; ++k) f(glm::vec3(world * glm::vec4(mesh.P[t[k]], 1.0f)));
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const std::vector<glm::vec3>& vertices = placed_vertices(scene, pose, i);
+        const glm::dmat4 world(pose.world_from_instance[i]);
+        const Object& object = scene.objects[std::size_t(scene.instances[i].object)];
+        for (const glm::uvec3& t : object.mesh.triangles) {
+            for (int k = 0; k < 3; ++k) f(glm::dvec3(world * glm::dvec4(vertices[t[k]], 1.0)));
         }
     }
 }
 
 /// A sphere around all that is to be seen at time 0: the same from every side of the orbit.
 Sphere around(const Scene& scene) {
-    const Pose pose = pose_at(scene, 0.0);
-    glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-    for_each_world_point(scene, pose, [&](const glm::vec3& p) {
+    if (scene.instances.empty()) return {};
+    const glm::dvec3 origin = near_origin(scene);
+    const Pose pose = pose_at(scene, 0.0, origin);
+    glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
+    for_each_world_point(scene, pose, [&](const glm::dvec3& p) {
         low = glm::min(low, p);
         high = glm::max(high, p);
     });
     if (low.x > high.x) return {};
-    Sphere sphere{0.5f * low + 0.5f * high, 0.0f};
-    for_each_world_point(scene, pose, [&](const glm::vec3& p) {
+    Sphere sphere{0.5 * low + 0.5 * high, 0.0};
+    for_each_world_point(scene, pose, [&](const glm::dvec3& p) {
         sphere.radius = std::max(sphere.radius, glm::distance(p, sphere.center));
     });
-    if (!(sphere.radius > 0.0f)) sphere.radius = 1.0f;
+    if (!(sphere.radius > 0.0)) sphere.radius = 1.0;
+    sphere.center += origin;
     return sphere;
 }
 
@@ -90,11 +95,11 @@ void add_orbit_camera(Scene& scene) {
     orbit.rotations = one_turn();
     const int orbit_node = add_node(scene, std::move(orbit));
 
-    const float distance = margin * sphere.radius / std::sin(0.5f * yfov);
+    const double distance = margin * sphere.radius / std::sin(0.5 * yfov);
     Node arm;
     arm.name = "orbit_camera";
     arm.parent = orbit_node;
-    arm.translation = distance * glm::vec3(0.0f, std::sin(elevation), std::cos(elevation));
+    arm.translation = distance * glm::dvec3(0.0, std::sin(elevation), std::cos(elevation));
     arm.rotation = glm::angleAxis(-elevation, glm::vec3(1.0f, 0.0f, 0.0f));
     const int arm_node = add_node(scene, std::move(arm));
     scene.cameras.push_back({"orbit", arm_node, yfov});

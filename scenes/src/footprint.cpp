@@ -28,13 +28,20 @@ struct Worker {
 struct View {
     PinholePose camera;
     std::vector<float> footprint_per_distance;  ///< by instance, object space over world distance
+    const Pose& pose;
+
+    /// Object space: what is stretched shows its pattern the larger for it.
+    float footprint(const Hit& hit, float distance) const {
+        const float there = distance * footprint_per_distance[hit.instance];
+        const BentMesh* const bent = pose.bent[hit.instance].get();
+        return bent ? there / bent->stretch[hit.triangle] : there;
+    }
 };
 
 View view_at(const Scene& scene, const SceneCamera& camera, const Pose& pose, int height) {
-    View view{pinhole_pose(scene, camera, pose), {}};
+    View view{pinhole_pose(scene, camera, pose), {}, pose};
     const double pixel_angle = view.camera.pixel_angle(height);
-    for (const Instance& instance : scene.instances) {
-        const glm::mat4& world_from_object = pose.world_from_node[instance.node];
+    for (const glm::mat4& world_from_object : pose.world_from_instance) {
         const double stretch = largest_singular_value(glm::dmat3(glm::mat3(world_from_object)));
         view.footprint_per_distance.push_back(float(pixel_angle / stretch));
     }
@@ -56,7 +63,7 @@ void trace_row(const Scene& scene, const RayScene& rays, const View& view, int y
         if (hit.instance == Hit::none) continue;
         const float distance = hit.t * glm::length(worker.rays[i].direction);
         float& smallest = worker.smallest[scene.instances[hit.instance].object];
-        smallest = std::min(smallest, distance * view.footprint_per_distance[hit.instance]);
+        smallest = std::min(smallest, view.footprint(hit, distance));
     }
 }
 
@@ -69,9 +76,11 @@ std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int c
     tbb::enumerable_thread_specific<Worker> workers(Worker{{}, {}, unseen});
     const int rows = (height + stride - 1) / stride;
     for (int f = 0; f < frames.count(); ++f) {
-        const Pose pose = pose_at(scene, frames.at(f) / fps);
+        const double time = frames.at(f) / fps;
+        const SceneCamera& eye = scene.cameras[camera];
+        const Pose pose = pose_at(scene, time, place_of(scene, eye.node, time));
         rays.set_pose(pose);
-        const View view = view_at(scene, scene.cameras[camera], pose, height);
+        const View view = view_at(scene, eye, pose, height);
         tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const auto& range) {
             Worker& worker = workers.local();
             for (int row = range.begin(); row < range.end(); ++row)

@@ -93,16 +93,17 @@ private:
     }
 
     /// Numbers of a property that may be left out; the result is empty then.
-    std::vector<float> property(const std::vector<double>& values, std::size_t count,
-                                const char* name, const std::string& where) const {
+    template <class T = float>
+    std::vector<T> property(const std::vector<double>& values, std::size_t count, const char* name,
+                            const std::string& where) const {
         if (!values.empty() && values.size() != count) {
             throw Error(fmt::format("{}: {} numbers in \"{}\"; it needs {}", where, values.size(),
                                     name, count));
         }
-        std::vector<float> result;
+        std::vector<T> result;
         for (const double value : values) {
-            result.push_back(float(value));
-            if (!std::isfinite(result.back())) {
+            result.push_back(T(value));
+            if (!std::isfinite(float(value))) {
                 throw Error(fmt::format("{}: \"{}\" is not finite", where, name));
             }
         }
@@ -114,13 +115,14 @@ private:
         Node node;
         node.name = from.name.empty() ? fmt::format("node_{}", index) : from.name;
         node.parent = parent;
-        const auto matrix = property(from.matrix, 16, "matrix", where);
+        node.weights = property(from.weights, from.weights.size(), "weights", where);
+        const auto matrix = property<double>(from.matrix, 16, "matrix", where);
         if (!matrix.empty()) {
-            node.matrix = glm::mat4(0.0f);
+            node.matrix = glm::dmat4(0.0);
             for (int k = 0; k < 16; ++k) (*node.matrix)[k / 4][k % 4] = matrix[std::size_t(k)];
             return node;
         }
-        const auto t = property(from.translation, 3, "translation", where);
+        const auto t = property<double>(from.translation, 3, "translation", where);
         const auto r = property(from.rotation, 4, "rotation", where);
         const auto s = property(from.scale, 3, "scale", where);
         if (!t.empty()) node.translation = {t[0], t[1], t[2]};
@@ -138,9 +140,10 @@ private:
 
     void read_contents(const tinygltf::Node& node, int ours) {
         if (node.mesh != -1) {
-            if (node.skin != -1) ++m_skinned;
+            const int skin = skin_of(node);
             for (const int object : objects_of(node.mesh)) {
-                m_scene.instances.push_back({object, ours});
+                const bool follows = skin >= 0 && check_skin(object, skin);
+                m_scene.instances.push_back({object, ours, follows ? skin : -1});
             }
         }
         if (node.camera != -1) read_camera(node.camera, ours);
@@ -148,6 +151,28 @@ private:
         if (light == node.extensions.end()) return;
         const tinygltf::Value& index = light->second.Get("light");
         read_light(index.IsInt() ? index.GetNumberAsInt() : -1, ours);
+    }
+
+    /// Index into m_scene.skins of a node's skin, read once however many nodes have it; or -1.
+    int skin_of(const tinygltf::Node& node) {
+        if (node.skin == -1) return -1;
+        const auto [place, is_new] = m_skins.try_emplace(node.skin, int(m_scene.skins.size()));
+        if (is_new) {
+            m_scene.skins.push_back(read_skin(m_model, node.skin, m_ours, m_scene.path));
+        }
+        return place->second;
+    }
+
+    /// Whether an object follows the joints of a skin. Error if these are not all there.
+    bool check_skin(int index, int skin) {
+        const Object& object = m_scene.objects[std::size_t(index)];
+        const std::string mesh = fmt::format("mesh \"{}\"", one_line(object.mesh_name));
+        if (object.bends.influences.count == 0) {
+            warn(mesh + ": its node has a skin, but its vertices follow no joints; shown without");
+            return false;
+        }
+        check_joints(object, m_scene.skins[std::size_t(skin)], m_scene.path + ": " + mesh);
+        return true;
     }
 
     /// The objects that a mesh makes, one for each of its primitives of triangles; made once,
@@ -162,11 +187,12 @@ private:
                 ++m_points_and_lines;
                 continue;
             }
-            if (!primitive.targets.empty()) ++m_morphed;
+            if (primitive.attributes.contains("JOINTS_2")) ++m_many_joints;
             Object object;
             object.mesh_name = mesh.name.empty() ? fmt::format("mesh_{}", mesh_index) : mesh.name;
             object.name = object.mesh_name;
-            object.mesh = read_primitive(m_model, primitive, where);
+            object.weights = property(mesh.weights, mesh.weights.size(), "weights", where);
+            read_primitive(m_model, primitive, where, object);
             dress(object, primitive.material, where);
             place->second.push_back(int(m_scene.objects.size()));
             m_scene.objects.push_back(std::move(object));
@@ -253,8 +279,7 @@ private:
             if (count > 0) warn(fmt::format("not shown: {} {}", count, what));
         };
         tell(m_points_and_lines, "primitives of points or lines");
-        tell(m_skinned, "skins; their meshes stand in rest pose");
-        tell(m_morphed, "primitives' morph targets; they keep their basic shape");
+        tell(m_many_joints, "primitives' joints beyond eight a vertex");
         tell(m_textured, "colour textures; the colour factor is");
         tell(m_orthographic, "orthographic cameras");
     }
@@ -280,7 +305,8 @@ private:
     Scene m_scene;
     std::vector<int> m_ours;                    ///< our node by the file's; -1: not shown
     std::map<int, std::vector<int>> m_objects;  ///< by mesh
-    int m_points_and_lines = 0, m_skinned = 0, m_morphed = 0, m_textured = 0, m_orthographic = 0;
+    std::map<int, int> m_skins;                 ///< index into m_scene.skins by index in the file
+    int m_points_and_lines = 0, m_many_joints = 0, m_textured = 0, m_orthographic = 0;
 };
 
 }  // namespace

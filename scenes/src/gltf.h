@@ -41,9 +41,20 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int access
 /// Whether a primitive is made of triangles, not of points or lines.
 bool has_triangles(const tinygltf::Primitive& primitive);
 
-/// A primitive of triangles, with the vertices it uses only.
-Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                    const std::string& where);
+/// A primitive of triangles, with the vertices it uses only, and how they bend: into the object.
+void read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                    const std::string& where, Object& object);
+
+/// How a primitive's vertices bend; each of its arrays is of that many.
+Deformation read_deformation(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                             std::size_t vertices, const std::string& where);
+
+/// @param ours  index into scene.nodes by index in the file; -1 for nodes that are not shown
+Skin read_skin(const tinygltf::Model& model, int index, const std::vector<int>& ours,
+               const std::string& path);
+
+/// Error if an object's vertices follow joints that a skin does not have.
+void check_joints(const Object& object, const Skin& skin, const std::string& where);
 
 /// What a material says: the shader and the colour. An index of -1 is no material.
 void read_material(const tinygltf::Model& model, int index, const std::string& where,

@@ -1,6 +1,8 @@
 // Key frames of glTF nodes.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "gltf.h"
 
 namespace estara {
@@ -14,6 +16,7 @@ Interpolation interpolation_named(const std::string& name, const std::string& wh
                             one_line(name)));
 }
 
+float value_from(const float* v, const float&) { return v[0]; }
 glm::vec3 value_from(const float* v, const glm::vec3&) { return {v[0], v[1], v[2]}; }
 glm::quat value_from(const float* v, const glm::quat&) { return {v[3], v[0], v[1], v[2]}; }
 
@@ -26,24 +29,48 @@ void check_times(const std::vector<float>& times, const std::string& where) {
     }
 }
 
+/// The tracks of a sampler's output: `count` values a key, one for each of as many tracks (morph
+/// targets; 1 of everything else). A cubic spline has three times as many: all in-tangents of a key
+/// come first, then its values.
+template <class T>
+std::vector<Track<T>> read_tracks(const tinygltf::Model& model,
+                                  const tinygltf::AnimationSampler& sampler,
+                                  const std::string& where, std::size_t count) {
+    constexpr std::size_t components = sizeof(T) / sizeof(float);
+    Track<T> track;
+    track.interpolation = interpolation_named(sampler.interpolation, where);
+    track.times = read_floats(model, sampler.input, 1, where + ": times");
+    check_times(track.times, where);
+    const std::vector<float> values =
+        read_floats(model, sampler.output, int(components), where + ": values");
+    const std::size_t parts = track.interpolation == Interpolation::cubic_spline ? 3 : 1;
+    const std::size_t a_key = parts * count;
+    if (values.size() != track.times.size() * a_key * components) {
+        throw Error(fmt::format("{}: {} values for {} keys; it needs {} a key", where,
+                                values.size() / components, track.times.size(), a_key));
+    }
+    std::vector<Track<T>> tracks(count, track);
+    for (std::size_t i = 0; i < values.size() / components; ++i) {
+        tracks[i % count].values.push_back(value_from(values.data() + i * components, T{}));
+    }
+    return tracks;
+}
+
 template <class T>
 void read_track(const tinygltf::Model& model, const tinygltf::AnimationSampler& sampler,
                 const std::string& where, Track<T>& track) {
-    constexpr std::size_t components = sizeof(T) / sizeof(float);
-    track.interpolation = interpolation_named(sampler.interpolation, where);
-    std::vector<float> times = read_floats(model, sampler.input, 1, where + ": times");
-    check_times(times, where);
-    const std::vector<float> values =
-        read_floats(model, sampler.output, int(components), where + ": values");
-    const std::size_t a_key = track.interpolation == Interpolation::cubic_spline ? 3 : 1;
-    if (values.size() != times.size() * a_key * components) {
-        throw Error(fmt::format("{}: {} values for {} keys; it needs {} a key", where,
-                                values.size() / components, times.size(), a_key));
+    track = std::move(read_tracks<T>(model, sampler, where, 1).front());
+}
+
+/// How many morph targets a node's mesh has.
+std::size_t targets_of(const tinygltf::Model& model, int node) {
+    const int mesh = model.nodes[std::size_t(node)].mesh;
+    if (mesh < 0 || std::size_t(mesh) >= model.meshes.size()) return 0;
+    std::size_t most = 0;
+    for (const tinygltf::Primitive& primitive : model.meshes[std::size_t(mesh)].primitives) {
+        most = std::max(most, primitive.targets.size());
     }
-    for (std::size_t i = 0; i < values.size(); i += components) {
-        track.values.push_back(value_from(values.data() + i, T{}));
-    }
-    track.times = std::move(times);
+    return most;
 }
 
 void check_rotations(const Track<glm::quat>& track, const std::string& where) {
@@ -61,6 +88,13 @@ Outcome read_channel(const tinygltf::Model& model, const tinygltf::AnimationChan
                      const tinygltf::AnimationSampler& sampler, const std::string& where,
                      Node& node) {
     const std::string& path = channel.target_path;
+    if (path == "weights") {
+        const std::size_t targets = targets_of(model, channel.target_node);
+        if (targets == 0) return Outcome::unknown_path;
+        if (!node.weight_tracks.empty()) return Outcome::taken_before;
+        node.weight_tracks = read_tracks<float>(model, sampler, where, targets);
+        return Outcome::taken;
+    }
     if (path != "translation" && path != "rotation" && path != "scale") {
         return Outcome::unknown_path;
     }
@@ -110,9 +144,9 @@ void read_animations(const tinygltf::Model& model, const std::vector<int>& ours,
             }
         }
         if (left_out > 0) {
-            scene.warnings.push_back(
-                fmt::format("{}: {} channels move neither place, rotation nor scale; not shown",
-                            where, left_out));
+            scene.warnings.push_back(fmt::format(
+                "{}: {} channels move neither place, rotation, scale nor shape; not shown", where,
+                left_out));
         }
         if (twice > 0) {
             scene.warnings.push_back(fmt::format(

@@ -42,25 +42,41 @@ std::vector<glm::uvec3> triangles_of(const std::vector<std::uint32_t>& v, int mo
     return triangles;
 }
 
+/// Of an array with `each` values a vertex, those of vertices that have a place.
+template <class T>
+void keep_used(std::vector<T>& values, const std::vector<std::uint32_t>& place, int each = 1) {
+    if (values.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        if (place[i] == ~0u) continue;
+        for (int k = 0; k < each; ++k)
+            values[kept++] = values[i * std::size_t(each) + std::size_t(k)];
+    }
+    values.resize(kept);
+}
+
 /// Drops the vertices that no triangle uses: primitives often share one large list.
-void drop_unused_vertices(Mesh& mesh) {
-    constexpr std::uint32_t unused = ~0u;
-    std::vector<std::uint32_t> place(mesh.P.size(), unused);
+void drop_unused_vertices(Object& object) {
+    Mesh& mesh = object.mesh;
+    std::vector<std::uint32_t> place(mesh.P.size(), ~0u);
     for (const glm::uvec3& t : mesh.triangles) {
         for (int k = 0; k < 3; ++k) place[t[k]] = 0;
     }
     std::uint32_t used = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-        if (place[i] == unused) continue;
-        place[i] = used;
-        mesh.P[used] = mesh.P[i];
-        if (!mesh.N.empty()) mesh.N[used] = mesh.N[i];
-        if (mesh.has_uv()) mesh.uv[used] = mesh.uv[i];
-        ++used;
+    for (std::uint32_t& p : place) {
+        if (p != ~0u) p = used++;
     }
-    mesh.P.resize(used);
-    if (!mesh.N.empty()) mesh.N.resize(used);
-    if (mesh.has_uv()) mesh.uv.resize(used);
+    if (used == place.size()) return;
+    keep_used(mesh.P, place);
+    keep_used(mesh.N, place);
+    keep_used(mesh.uv, place);
+    for (MorphTarget& target : object.bends.targets) {
+        keep_used(target.P, place);
+        keep_used(target.N, place);
+    }
+    Influences& influences = object.bends.influences;
+    keep_used(influences.joint, place, influences.count);
+    keep_used(influences.weight, place, influences.count);
     for (glm::uvec3& t : mesh.triangles) t = {place[t.x], place[t.y], place[t.z]};
 }
 
@@ -72,8 +88,8 @@ bool has_triangles(const tinygltf::Primitive& primitive) {
            primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
 }
 
-Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                    const std::string& where) {
+void read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                    const std::string& where, Object& object) {
     const std::vector<float> P = attribute(model, primitive, "POSITION", 3, where);
     const std::vector<float> N = attribute(model, primitive, "NORMAL", 3, where);
     const std::vector<float> uv = attribute(model, primitive, "TEXCOORD_0", 2, where);
@@ -81,7 +97,7 @@ Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
     check_count(N, 3, vertices, "normals", where);
     check_count(uv, 2, vertices, "texture coordinates", where);
 
-    Mesh mesh;
+    Mesh& mesh = object.mesh;
     for (std::size_t i = 0; i < vertices; ++i) {
         mesh.P.emplace_back(P[3 * i], P[3 * i + 1], P[3 * i + 2]);
         if (!N.empty()) mesh.N.emplace_back(N[3 * i], N[3 * i + 1], N[3 * i + 2]);
@@ -97,9 +113,9 @@ Mesh read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
     }
     mesh.triangles = triangles_of(order, primitive.mode);
     if (mesh.triangles.empty()) throw Error(fmt::format("{}: no triangles", where));
-    drop_unused_vertices(mesh);
+    object.bends = read_deformation(model, primitive, vertices, where);
+    drop_unused_vertices(object);
     mend_normals(mesh);
-    return mesh;
 }
 
 }  // namespace estara

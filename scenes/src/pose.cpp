@@ -3,16 +3,19 @@
 #include <cmath>
 #include <limits>
 
+#include "estara/scenes/ray_scene.h"
 #include "estara/scenes/scene.h"
 
 namespace estara {
 namespace {
 
+float between(float a, float b, float s) { return glm::mix(a, b, s); }
 glm::vec3 between(const glm::vec3& a, const glm::vec3& b, float s) { return glm::mix(a, b, s); }
 glm::quat between(const glm::quat& a, const glm::quat& b, float s) {
     return glm::slerp(a, b, s);  // GLM's turns the shorter way round
 }
 
+float finished(float v) { return v; }
 glm::vec3 finished(const glm::vec3& v) { return v; }
 glm::quat finished(const glm::quat& q) {
     const float length = glm::length(q);
@@ -50,15 +53,81 @@ T value_at(const Track<T>& track, double time) {
     return finished(between(key(i), key(i + 1), s));
 }
 
-glm::mat4 parent_from_node(const Node& node, double time) {
+glm::dmat4 parent_from_node(const Node& node, double time) {
     if (node.matrix) return *node.matrix;
-    const glm::vec3 t =
-        node.translations.empty() ? node.translation : value_at(node.translations, time);
+    const glm::dvec3 t = node.translations.empty() ? node.translation
+                                                   : glm::dvec3(value_at(node.translations, time));
     const glm::quat r = node.rotations.empty() ? node.rotation : value_at(node.rotations, time);
-    const glm::vec3 s = node.scales.empty() ? node.scale : value_at(node.scales, time);
-    const glm::mat3 turn = glm::mat3_cast(r);
-    return {glm::vec4(turn[0] * s.x, 0.0f), glm::vec4(turn[1] * s.y, 0.0f),
-            glm::vec4(turn[2] * s.z, 0.0f), glm::vec4(t, 1.0f)};
+    const glm::dvec3 s(node.scales.empty() ? node.scale : value_at(node.scales, time));
+    const glm::dmat3 turn = glm::mat3_cast(glm::normalize(glm::dquat(r)));
+    return {glm::dvec4(turn[0] * s.x, 0.0), glm::dvec4(turn[1] * s.y, 0.0),
+            glm::dvec4(turn[2] * s.z, 0.0), glm::dvec4(t, 1.0)};
+}
+
+std::vector<glm::dmat4> world_from_nodes(const Scene& scene, double time) {
+    std::vector<glm::dmat4> world;
+    world.reserve(scene.nodes.size());
+    for (const Node& node : scene.nodes) {
+        const glm::dmat4 local = parent_from_node(node, time);
+        world.push_back(node.parent < 0 ? local : world[std::size_t(node.parent)] * local);
+    }
+    return world;
+}
+
+glm::mat4 seen_from(const glm::dvec3& origin, glm::dmat4 world_from_it) {
+    world_from_it[3] -= glm::dvec4(origin, 0.0);
+    return glm::mat4(world_from_it);
+}
+
+std::vector<float> weights_at(const Node& node, const Object& object, double time) {
+    if (node.weight_tracks.empty()) return node.weights.empty() ? object.weights : node.weights;
+    std::vector<float> weights;
+    for (const Track<float>& track : node.weight_tracks) weights.push_back(value_at(track, time));
+    return weights;
+}
+
+bool is_finite(const glm::mat4& m) {
+    for (int c = 0; c < 4; ++c) {
+        for (int r = 0; r < 3; ++r) {
+            if (!std::isfinite(m[c][r])) return false;
+        }
+    }
+    return true;
+}
+
+bool any_weight(const std::vector<float>& weights) {
+    return std::any_of(weights.begin(), weights.end(), [](float w) { return w != 0.0f; });
+}
+
+void pose_instance(const Scene& scene, const Instance& instance, double time,
+                   const glm::dvec3& origin, const std::vector<glm::dmat4>& world, Pose& pose) {
+    const Object& object = scene.objects[std::size_t(instance.object)];
+    const glm::dmat4& node = world[std::size_t(instance.node)];
+    const glm::mat4 placed = seen_from(origin, node);
+    const bool is_bent = bends(scene, instance);
+    const bool is_flat = is_finite(placed) && !can_be_hit(placed);
+    if (!is_bent && !is_flat) {
+        pose.world_from_instance.push_back(placed);
+        pose.bent.push_back(nullptr);
+        return;
+    }
+    std::vector<glm::dmat4> joints;
+    if (instance.skin >= 0) {
+        const Skin& skin = scene.skins[std::size_t(instance.skin)];
+        for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+            joints.push_back(world[std::size_t(skin.joints[j])] *
+                             glm::dmat4(skin.joint_from_rest[j]));
+        }
+    }
+    const Bent bent =
+        bend(object.mesh, object.bends,
+             weights_at(scene.nodes[std::size_t(instance.node)], object, time), node, joints);
+    glm::dmat4 there(1.0);
+    // What is not finite is nowhere, as is a matrix that is not.
+    there[3] = bent.mesh ? glm::dvec4(bent.anchor, 1.0)
+                         : glm::dvec4(glm::dvec3(std::numeric_limits<double>::infinity()), 1.0);
+    pose.world_from_instance.push_back(seen_from(origin, there));
+    pose.bent.push_back(bent.mesh);
 }
 
 /// Widens [first, last] to a track's keys.
@@ -73,15 +142,37 @@ int whole_frame(double frame) { return int(std::clamp(frame, -1e9, 1e9)); }
 
 }  // namespace
 
-Pose pose_at(const Scene& scene, double time) {
+Pose pose_at(const Scene& scene, double time, const glm::dvec3& origin) {
+    const std::vector<glm::dmat4> world = world_from_nodes(scene, time);
     Pose pose;
-    pose.world_from_node.reserve(scene.nodes.size());
-    for (const Node& node : scene.nodes) {
-        const glm::mat4 local = parent_from_node(node, time);
-        pose.world_from_node.push_back(
-            node.parent < 0 ? local : pose.world_from_node[std::size_t(node.parent)] * local);
+    pose.origin = origin;
+    pose.world_from_node.reserve(world.size());
+    for (const glm::dmat4& node : world) pose.world_from_node.push_back(seen_from(origin, node));
+    for (const Instance& instance : scene.instances) {
+        pose_instance(scene, instance, time, origin, world, pose);
     }
     return pose;
+}
+
+glm::dvec3 place_of(const Scene& scene, int node, double time) {
+    glm::dvec3 place(0.0);
+    for (; node >= 0; node = scene.nodes[std::size_t(node)].parent) {
+        place = glm::dvec3(parent_from_node(scene.nodes[std::size_t(node)], time) *
+                           glm::dvec4(place, 1.0));
+    }
+    return place;
+}
+
+bool bends(const Scene& scene, const Instance& instance) {
+    if (instance.skin >= 0) return true;
+    const Object& object = scene.objects[std::size_t(instance.object)];
+    if (object.bends.targets.empty()) return false;
+    const Node& node = scene.nodes[std::size_t(instance.node)];
+    if (node.weight_tracks.empty()) {
+        return any_weight(node.weights.empty() ? object.weights : node.weights);
+    }
+    return std::any_of(node.weight_tracks.begin(), node.weight_tracks.end(),
+                       [](const Track<float>& track) { return any_weight(track.values); });
 }
 
 FrameRange animated_frames(const Scene& scene, double fps) {
@@ -90,6 +181,7 @@ FrameRange animated_frames(const Scene& scene, double fps) {
         take_in(node.translations, first, last);
         take_in(node.rotations, first, last);
         take_in(node.scales, first, last);
+        for (const Track<float>& track : node.weight_tracks) take_in(track, first, last);
     }
     if (first > last) return {};
     // Times are floats of f / fps: a key a thousandth of a frame late is on its frame.

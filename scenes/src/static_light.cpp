@@ -25,7 +25,9 @@ bool changes(const Track<T>& track) noexcept {
 }
 
 bool is_animated(const Node& node) noexcept {
-    return changes(node.translations) || changes(node.rotations) || changes(node.scales);
+    return changes(node.translations) || changes(node.rotations) || changes(node.scales) ||
+           std::any_of(node.weight_tracks.begin(), node.weight_tracks.end(),
+                       [](const Track<float>& track) { return changes(track); });
 }
 
 /// The nearest node, from this one upwards, that moves; or "".
@@ -41,8 +43,12 @@ std::string moving_from(const Scene& scene, int node) {
 
 std::string moving_node(const Scene& scene) {
     for (const Instance& instance : scene.instances) {
-        const std::string moving = moving_from(scene, instance.node);
-        if (!moving.empty()) return moving;
+        std::vector<int> movers{instance.node};  // what a skin carries follows its joints alone
+        if (instance.skin >= 0) movers = scene.skins[std::size_t(instance.skin)].joints;
+        for (const int node : movers) {
+            const std::string moving = moving_from(scene, node);
+            if (!moving.empty()) return moving;
+        }
     }
     for (const SceneLight& light : scene.lights) {
         const std::string moving = moving_from(scene, light.node);
@@ -51,15 +57,34 @@ std::string moving_node(const Scene& scene) {
     return "";
 }
 
+std::string why_no_static_light(const Scene& scene, int object) {
+    const std::vector<int> instances = instances_of(scene, object);
+    if (instances.size() != 1) {
+        return fmt::format("it stands in the scene {} times, and light differs from place to place",
+                           instances.size());
+    }
+    const auto instance = std::size_t(instances.front());
+    if (bends(scene, scene.instances[instance])) {
+        return "it bends, and light is baked on the shape that it has at rest";
+    }
+    return pose_at(scene, 0.0).bent[instance] ? "its node squeezes it flat" : "";
+}
+
+glm::dvec3 near_origin(const Scene& scene) {
+    return scene.instances.empty() ? glm::dvec3(0.0)
+                                   : place_of(scene, scene.instances.front().node, 0.0);
+}
+
 std::string lights_digest(const Scene& scene, int instance) {
     std::string text = std::to_string(instance);
     const auto add = [&text](const void* data, std::size_t bytes) {
         text.append(static_cast<const char*>(data), bytes);
     };
-    const Pose pose = pose_at(scene, 0.0);
-    for (const Instance& i : scene.instances) {
-        add(&pose.world_from_node[std::size_t(i.node)], sizeof(glm::mat4));
-        text += std::to_string(i.object) + ';';
+    const Pose pose = pose_at(scene, 0.0, near_origin(scene));
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        add(&pose.world_from_instance[i], sizeof(glm::mat4));
+        text += std::to_string(scene.instances[i].object) + ';';
+        if (pose.bent[i]) add(pose.bent[i]->P.data(), pose.bent[i]->P.size() * sizeof(glm::vec3));
     }
     for (const Object& object : scene.objects) text += mesh_digest(object.mesh);
     for (const PosedLight& light : posed_lights(scene, pose)) {
@@ -73,13 +98,14 @@ std::string lights_digest(const Scene& scene, int instance) {
 }
 
 StaticLight::StaticLight(const Scene& scene, const RayScene& rays, int instance)
+    : StaticLight(scene, rays, pose_at(scene, 0.0, rays.origin()), instance) {}
+
+StaticLight::StaticLight(const Scene& scene, const RayScene& rays, const Pose& pose, int instance)
     : m_rays(rays),
-      m_world_from_object(
-          pose_at(scene, 0.0)
-              .world_from_node[std::size_t(scene.instances[std::size_t(instance)].node)]),
+      m_world_from_object(pose.world_from_instance[std::size_t(instance)]),
       m_world_from_normal(normal_matrix(glm::dmat3(glm::mat3(m_world_from_object)))),
       m_offset(m_world_from_object),
-      m_lights(posed_lights(scene, pose_at(scene, 0.0))) {}
+      m_lights(posed_lights(scene, pose)) {}
 
 void StaticLight::irradiance(std::span<const MeshPoint> points, glm::vec3* E) const {
     std::fill_n(E, points.size(), glm::vec3(0.0f));

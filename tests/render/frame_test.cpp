@@ -384,5 +384,38 @@ TEST(Frame, OffTheBakedBandIsEvaluatedDirectlyAndCounted) {
     EXPECT_LT(largest_difference(film, reference), 0.1f);
 }
 
+TEST(Frame, IsTheSameFarFromTheOrigin) {
+    const auto picture = [](const glm::dvec3& far) {
+        Scene scene = scene_of({object("ball", sphere(1.0f, 48), "wood", {{"ringscale", {3.0f}}}),
+                                object("little", sphere(0.4f, 32), "stone", {{"scale", {0.2f}}})});
+        Node aside;
+        aside.translation = {0.9, 0.6, 0.9};
+        scene.nodes.push_back(aside);
+        scene.instances[1].node = int(scene.nodes.size()) - 1;
+        scene.ambient = glm::vec3(0.2f);
+        test::add_sun(scene, glm::quat(glm::vec3(-0.6f, 0.4f, 0.0f)));
+        for (Node& node : scene.nodes) node.translation += far;
+        RayScene rays(scene);
+        FrameSettings settings;
+        settings.width = 160;
+        settings.height = 120;
+        settings.aovs.position = true;
+        std::vector<ObjectShading> shading;
+        for (const Object& o : scene.objects) shading.push_back({o.shader, nullptr, 0.01f});
+        Film film(settings.width, settings.height, settings.aovs);
+        FrameRenderer(scene, rays, settings).render(shading, 0, 0.0, film, {});
+        return film;
+    };
+    const Film here = picture(glm::dvec3(0.0));
+    for (const glm::dvec3& far : {glm::dvec3(1e6, 0, -5e5), glm::dvec3(-6.4e6, 6.4e6, 1e7)}) {
+        const Film there = picture(far);
+        EXPECT_LT(compare_films(there, here).rmse, 1e-4);
+        // P is the scene's own, as exactly as a float can have it.
+        const std::size_t middle = here.index(80, 60);
+        const glm::dvec3 P = glm::dvec3(here.P[middle]) + far;
+        EXPECT_LE(glm::distance(glm::dvec3(there.P[middle]), P), 1.0);
+    }
+}
+
 }  // namespace
 }  // namespace estara

@@ -161,8 +161,10 @@ TEST(MatchGrids, BakedLightFitsUntilALightOrAPlaceChanges) {
     EXPECT_EQ(match_grids(moved, {light}).warnings, match.warnings);
     Scene twice = scene;
     twice.instances.push_back(twice.instances[0]);
-    EXPECT_EQ(match_grids(twice, {light}).warnings,
-              Warnings{start + "it stands in the scene 2 times" + end});
+    EXPECT_EQ(
+        match_grids(twice, {light}).warnings,
+        Warnings{start + "it stands in the scene 2 times, and light differs from place to place" +
+                 end});
     LoadedGrid other = light;
     other.grid.channels.pop_back();
     EXPECT_EQ(match_grids(scene, {other}).warnings,

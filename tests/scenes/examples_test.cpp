@@ -492,6 +492,7 @@ TEST(Examples, AreListed) {
     EXPECT_EQ(outcome.text,
               "still-life   wood, marble and stone on a table, the camera goes around\n"
               "tumble       a wooden knot that flies and turns, the camera stands still\n"
+              "bend         a wooden post that joints bow, a face that shape keys change\n"
               "simple       each of the paper's eleven shaders on an object of its own\n"
               "face         a head of skin in a bust of green marble, the camera passes by\n"
               "face-b       the same head, its skin darker, oilier and more blemished\n"
@@ -503,7 +504,7 @@ TEST(Examples, SayWhatIsWrongInOneLine) {
     const std::pair<std::string, std::string> cases[]{
         {"", "no scene named; estara-scenes --list says which there are"},
         {"teapot -o x.glb",
-         "no scene 'teapot'; there are: still-life, tumble, simple, face, face-b, interior"},
+         "no scene 'teapot'; there are: still-life, tumble, bend, simple, face, face-b, interior"},
         {"tumble", "no file named; say where to write with -o FILE.glb"},
         {"tumble -o x.obj", "x.obj: scenes are written as .glb; give the name that ending"},
         {"tumble --colour", "no option --colour; --help lists the options"},

@@ -45,7 +45,8 @@ TEST(SmallestFootprint, OfAPlaneThatFacesTheCameraIsDistanceTimesPixelAngle) {
 TEST(SmallestFootprint, IsInObjectSpaceByTheLargestStretch) {
     Scene scene = scene_of({panel(20, 20)}, {at_distance(7, {2.0f, 5.0f, 0.1f})});
     scene.nodes[0].matrix =
-        *scene.nodes[0].matrix * glm::mat4_cast(glm::angleAxis(1.1f, glm::vec3(0.0f, 0.0f, 1.0f)));
+        *scene.nodes[0].matrix *
+        glm::dmat4(glm::mat4_cast(glm::angleAxis(1.1f, glm::vec3(0.0f, 0.0f, 1.0f))));
     add_camera(scene, {});
     EXPECT_NEAR(footprints(scene)[0], 7.0 * pixel_angle() / 5.0, 1e-3 * pixel_angle());
 }

@@ -290,9 +290,9 @@ TEST(RayScene, FollowsThePose) {
     RayScene rays(scene);
     const std::vector<Ray> some{{{50, 0.1f, 5}, {0, 0, -1}, 0.0f, inf}};
     EXPECT_EQ(traced(rays, some)[0].instance, Hit::none);
-    rays.set_pose({{transform({50, 0, 0}, glm::quat(1, 0, 0, 0), glm::vec3(1.0f))}});
+    rays.set_pose(pose_of({transform({50, 0, 0}, glm::quat(1, 0, 0, 0), glm::vec3(1.0f))}));
     EXPECT_EQ(traced(rays, some)[0].instance, 0u);
-    rays.set_pose({{glm::mat4(1.0f)}});
+    rays.set_pose(pose_of({glm::mat4(1.0f)}));
     EXPECT_EQ(traced(rays, some)[0].instance, Hit::none);
 }
 
@@ -305,14 +305,14 @@ TEST(RayScene, LeavesOutWhatIsFlattenedAndTakesItInAgain) {
     const Scene scene = scene_of({ball(8), ball(8)},
                                  {glm::mat4(0.0f), transform(away, slanted(), glm::vec3(1.0f))});
     RayScene rays(scene);  // starts with an instance of size 0
-    const glm::mat4 behind = *scene.nodes[1].matrix;
+    const glm::mat4 behind(*scene.nodes[1].matrix);
     const std::vector<Ray> some{{{0.05f, 0, 5}, {0, 0, -1}, 0.0f, inf}};
     EXPECT_EQ(traced(rays, some)[0].instance, 1u);
     for (const glm::mat4& singular :
          {glm::mat4(0.0f), crushed, broken, glm::mat4(inf), glm::mat4(1e-20f)}) {
-        rays.set_pose({{glm::mat4(1.0f), behind}});
+        rays.set_pose(pose_of({glm::mat4(1.0f), behind}));
         EXPECT_EQ(traced(rays, some)[0].instance, 0u);
-        rays.set_pose({{singular, behind}});
+        rays.set_pose(pose_of({singular, behind}));
         EXPECT_EQ(traced(rays, some)[0].instance, 1u);
     }
 }

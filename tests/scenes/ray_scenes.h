@@ -29,6 +29,12 @@ inline Scene scene_of(const std::vector<Mesh>& meshes, const std::vector<glm::ma
     return scene;
 }
 
+/// Instances at matrices; nothing bends.
+inline Pose pose_of(const std::vector<glm::mat4>& matrices) {
+    return {matrices, matrices, std::vector<std::shared_ptr<const BentMesh>>(matrices.size()),
+            glm::dvec3(0.0)};
+}
+
 /// A sphere of radius 1 without its texture seam: rows x 2 rows quads between the poles.
 inline Mesh ball(int rows) {
     Mesh mesh;

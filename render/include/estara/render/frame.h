@@ -93,6 +93,8 @@ struct FrameStatistics {
     std::uint64_t misses = 0;      ///< lookups that found no brick and were evaluated directly
     std::uint64_t bad_pixels = 0;  ///< NaN or infinite, written as 0
 
+    double geometry_seconds = 0.0;           ///< moving and bending what rays meet, wall time
+    std::uint64_t refits = 0, rebuilds = 0;  ///< ray structures of bent meshes
     std::uint64_t lit = 0;        ///< samples whose light was computed, shadow rays included
     double shadow_seconds = 0.0;  ///< of ray_seconds, those of shadow rays
     ReuseCounts reuse;

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -15,22 +16,26 @@ namespace estara {
 
 /// What is kept of a hit point of one object: floats, in this order.
 ///
-///     P (3)  N (3)  Ng (3)  baked...  [E (3)  sides...]
+///     P (3)  N (3)  Ng (3)  baked...  [site (3)]  [E (3)  sides...]
 ///
 /// All in object space, so that the point stays on an object that moves. N is the shading normal,
 /// or the normal that the shader has perturbed it to; Ng the geometric one. `baked` are the floats
-/// of the shader's Baked without its normal. E and sides are there where neither lights nor objects
-/// move: diffuse irradiance / pi, and as bits of words, first whether the point was seen from the
-/// side that Ng points to (E is that of this side), then for each light whether it is visible.
-/// (With one colour and up to 31 lights a record is 64 bytes, a line of the processor's cache.)
+/// of the shader's Baked without its normal. An object that bends has P, N and Ng in the rest pose,
+/// and the place on its mesh: the triangle's number as bits of a word, b1 and b2. E and sides are
+/// there where neither lights nor objects move: diffuse irradiance / pi, and as bits of words,
+/// first whether the point was seen from the side that Ng points to (E is that of this side), then
+/// for each light whether it is visible. (With one colour and up to 31 lights a record is 64 bytes,
+/// a line of the processor's cache.)
 struct RecordLayout {
     int baked = 0;
-    int lights = -1;  ///< of the scene; -1: E and sides are not kept
+    int lights = -1;     ///< of the scene; -1: E and sides are not kept
+    bool bends = false;  ///< whether the site is kept
 
     static constexpr int P = 0, N = 3, Ng = 6, first_baked = 9;
     bool is_lit() const noexcept { return lights >= 0; }
     int words() const noexcept { return is_lit() ? lights / 32 + 1 : 0; }
-    int E() const noexcept { return first_baked + baked; }
+    int site() const noexcept { return first_baked + baked; }
+    int E() const noexcept { return site() + (bends ? 3 : 0); }
     int sides() const noexcept { return E() + 3; }
     int floats() const noexcept { return is_lit() ? sides() + words() : E(); }
 };
@@ -39,8 +44,28 @@ struct RecordLayout {
 int normal_plane(const ShaderInfo& info) noexcept;
 
 /// The layout of a shader's records.
-/// @param lights  as RecordLayout has them
-RecordLayout record_layout(const ShaderInfo& info, int lights) noexcept;
+/// @param lights, bends  as RecordLayout has them
+RecordLayout record_layout(const ShaderInfo& info, int lights, bool bends = false) noexcept;
+
+/// A place on a mesh, and how a record keeps it.
+struct Site {
+    std::uint32_t triangle = 0;
+    float b1 = 0.0f, b2 = 0.0f;
+
+    static Site from(const float* record, const RecordLayout& layout) noexcept {
+        const float* const r = record + layout.site();
+        return {std::bit_cast<std::uint32_t>(r[0]), r[1], r[2]};
+    }
+    void put(float* record, const RecordLayout& layout) const noexcept {
+        float* const r = record + layout.site();
+        r[0] = std::bit_cast<float>(triangle);
+        r[1] = b1;
+        r[2] = b2;
+    }
+    glm::vec3 of(const std::vector<glm::vec3>& values, const glm::uvec3& t) const noexcept {
+        return (1.0f - b1 - b2) * values[t.x] + b1 * values[t.y] + b2 * values[t.z];
+    }
+};
 
 /// What a ray's hit point is known by: unique as long as the cache lives. Smaller is older.
 struct RayId {
@@ -110,6 +135,7 @@ public:
     /// Pages that have been in use since clear(); no other has a higher number.
     int page_count() const noexcept { return m_touched; }
     const Page& page(std::uint32_t p) const noexcept { return m_pages[p]; }
+    Page& page(std::uint32_t p) noexcept { return m_pages[p]; }
 
     /// Notes whether something is in front of the point.
     void set_hidden(RayId id, bool hidden) noexcept {

@@ -69,21 +69,31 @@ struct alignas(64) HitBatch {
 /// overflows. Others cannot be hit.
 bool can_be_hit(const glm::mat4& world_from_object) noexcept;
 
-/// The scene's geometry in a two-level acceleration structure: one per mesh in object space, one
-/// over the instances, rebuilt for each frame.
+/// What set_pose() has done to the structures of meshes that bend.
+struct GeometryUpdate {
+    double seconds = 0.0;  ///< of all of it, instances that only move included
+    int refits = 0;        ///< structures whose boxes were moved
+    int rebuilds = 0;      ///< and those built anew
+};
+
+/// The scene's geometry in a two-level acceleration structure: one per mesh in object space and
+/// one per bent instance, one over the instances, rebuilt for each frame.
 class RayScene {
 public:
     /// Builds the structures of all meshes in parallel, posed as at time 0. The scene must outlive
     /// this.
     /// Error (failed) if Embree runs out of memory.
-    explicit RayScene(const Scene& scene);
+    explicit RayScene(const Scene& scene, const glm::dvec3& origin = glm::dvec3(0.0));
     ~RayScene();
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
-    /// Moves the instances. Not while other threads trace. See
+    /// Moves the instances, and bends what bends. Not while other threads trace. See
     /// can_be_hit().
     void set_pose(const Pose& pose);
+    const GeometryUpdate& last_update() const noexcept;
+    /// Of the pose that it has (Pose::origin).
+    const glm::dvec3& origin() const noexcept;
 
     /// Nearest hits; rays that start near each other and go the same way are fastest (32
     /// neighbours at a time). Any thread, any number at once. Rays with NaN hit nothing.

@@ -5,10 +5,12 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "estara/scenes/deformation.h"
 #include "estara/scenes/light.h"
 #include "estara/scenes/mesh.h"
 #include "estara/shaders/registry.h"
@@ -25,8 +27,10 @@ struct ShaderChoice {
 /// A mesh with its material: what is baked, and what grids are named after.
 struct Object {
     std::string name;  ///< unique in the scene; letters, digits, '_', '-' and '.' only (else '_')
-    std::string mesh_name;  ///< as in the file; messages and --object know it too
-    Mesh mesh;
+    std::string mesh_name;       ///< as in the file; messages and --object know it too
+    Mesh mesh;                   ///< at rest
+    Deformation bends;           ///< how it can bend; empty: not at all
+    std::vector<float> weights;  ///< of the morph targets where a node gives none
     ShaderChoice choice;
     glm::vec3 base_color{0.5f};  ///< glTF baseColorFactor; what an object without shader shows
     BoundShaderPtr shader;       ///< choice bound; `plastic` with Cs = base_color without one
@@ -48,17 +52,20 @@ struct Track {
 struct Node {
     std::string name;
     int parent = -1;  ///< index into Scene::nodes, smaller than the node's own; -1: the world
-    glm::vec3 translation{0.0f};
+    glm::dvec3 translation{0.0};  ///< in double: a world may be far from its origin
     glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
     glm::vec3 scale{1.0f};
-    std::optional<glm::mat4> matrix;  ///< instead of the three above
+    std::optional<glm::dmat4> matrix;  ///< instead of the three above
     Track<glm::vec3> translations, scales;
     Track<glm::quat> rotations;
+    std::vector<float> weights;               ///< of its mesh's morph targets; empty: the object's
+    std::vector<Track<float>> weight_tracks;  ///< by morph target; empty: not animated
 };
 
 struct Instance {
     int object = 0;  ///< index into Scene::objects
     int node = 0;    ///< index into Scene::nodes
+    int skin = -1;   ///< index into Scene::skins: its joints move the mesh, the node does not
 };
 
 /// A perspective camera that looks along its node's -z with y up.
@@ -93,6 +100,7 @@ struct Scene {
     std::vector<Node> nodes;  ///< parents before children
     std::vector<Object> objects;
     std::vector<Instance> instances;
+    std::vector<Skin> skins;
     std::vector<SceneCamera> cameras;
     std::vector<SceneLight> lights;
     glm::vec3 ambient{
@@ -100,13 +108,34 @@ struct Scene {
     std::vector<std::string> warnings;  ///< what the file has and this project does not show
 };
 
-/// Everything that moves, at one time.
+/// Everything that moves, at one time. World space is seen from an origin of the caller's choice.
 struct Pose {
-    std::vector<glm::mat4> world_from_node;  ///< by node
+    std::vector<glm::mat4> world_from_node;      ///< by node
+    std::vector<glm::mat4> world_from_instance;  ///< by instance: from its mesh, or its bent mesh
+    /// By instance: its mesh as it is bent; null: the mesh as it is. What a node squeezes flat is
+    /// bent too: rays cannot be taken to the object's space and back then.
+    std::vector<std::shared_ptr<const BentMesh>> bent;
+    glm::dvec3 origin{0.0};  ///< what (0, 0, 0) is in the scene
 };
 
-/// @param time  seconds; before the first and after the last key a track holds its end values
-Pose pose_at(const Scene& scene, double time);
+/// Matrices are multiplied in double, and rounded once they are seen from the origin: give that of
+/// the camera, and nothing near it loses digits, however far from the world's origin it is.
+/// @param time    seconds; before the first and after the last key a track holds its end values
+/// @param origin  world; becomes (0, 0, 0)
+Pose pose_at(const Scene& scene, double time, const glm::dvec3& origin = glm::dvec3(0.0));
+
+/// Where a node is at one time: an origin for pose_at().
+glm::dvec3 place_of(const Scene& scene, int node, double time);
+
+/// Whether an instance's mesh bends at some time: it has a skin, or morph targets with a weight.
+bool bends(const Scene& scene, const Instance& instance);
+
+/// Vertices of an instance's mesh, which its matrix takes to the world.
+inline const std::vector<glm::vec3>& placed_vertices(const Scene& scene, const Pose& pose,
+                                                     std::size_t instance) {
+    const BentMesh* const bent = pose.bent[instance].get();
+    return bent ? bent->P : scene.objects[std::size_t(scene.instances[instance].object)].mesh.P;
+}
 
 /// The frames of the scene's animation: from the first key to the last at `fps` frames a second;
 /// 1-1 for a scene without animation.

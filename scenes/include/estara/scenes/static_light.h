@@ -17,6 +17,13 @@ namespace estara {
 /// only cameras move.
 std::string moving_node(const Scene& scene);
 
+/// Why an object's light cannot be baked ("it stands in the scene 3 times, ..."), or "". Whether
+/// anything moves is for moving_node() to say.
+std::string why_no_static_light(const Scene& scene, int object);
+
+/// An origin for RayScene near what is lit, so that no digits are lost far from the world's.
+glm::dvec3 near_origin(const Scene& scene);
+
 /// 16 hex digits that change whenever the light on that instance may: with any light, with the
 /// place of any instance and with any mesh.
 std::string lights_digest(const Scene& scene, int instance);
@@ -25,6 +32,7 @@ std::string lights_digest(const Scene& scene, int instance);
 class StaticLight {
 public:
     /// Of the scene as it is at time 0. Both must outlive this; `rays` is posed so, and stays.
+    /// @param instance  one that does not bend (Pose::bent)
     StaticLight(const Scene& scene, const RayScene& rays, int instance);
 
     /// Diffuse irradiance / pi from all lights on the side that the normals point to: the sum of
@@ -34,6 +42,7 @@ public:
     void irradiance(std::span<const MeshPoint> points, glm::vec3* E) const;
 
 private:
+    StaticLight(const Scene& scene, const RayScene& rays, const Pose& pose, int instance);
     void add(const PosedLight& light, std::span<const MeshPoint> points, glm::vec3* E) const;
 
     const RayScene& m_rays;
