@@ -458,7 +458,11 @@ void TileRenderer::average_seconds(const FrameContext& frame, const Group& group
             alike = alike && ((sides ^ m_sides[std::size_t(j)]) & 1u) == 0;
         }
         if (!alike) continue;
-        for (int c = 0; c < 3; ++c) mean(m_samples.surface.P[c][j], second[P + c]);
+        // The mean of two points lies below a surface that is curved. Where light is kept only
+        // highlights ask for it; a shadow ray from there would meet the surface itself.
+        if (layout.is_lit()) {
+            for (int c = 0; c < 3; ++c) mean(m_samples.surface.P[c][j], second[P + c]);
+        }
         int plane = 0;
         for (const ChannelInfo& channel : shading_of(frame, group).shader->info().channels) {
             const int first = plane;

@@ -519,5 +519,81 @@ TEST(Reuse, CallsNothingHiddenOnAConvexBodyOfAnySizeAnywhere) {
     }
 }
 
+/// The scene as it is, evaluated directly.
+Film direct_picture(const Scene& scene, int spp, std::uint32_t seed) {
+    RayScene rays(scene);
+    FrameSettings settings;
+    settings.width = width;
+    settings.height = height;
+    settings.spp = spp;
+    settings.seed = seed;
+    std::vector<ObjectShading> shading;
+    for (const Object& o : scene.objects) shading.push_back({o.shader, nullptr, 0.01f});
+    Film film(width, height, {});
+    FrameRenderer(scene, rays, settings).render(shading, 0, 0.0, film, {});
+    return film;
+}
+
+double mean_of(const Film& film) {
+    double sum = 0.0;
+    for (const glm::vec4& c : film.color) sum += double(c.r) + double(c.g) + double(c.b);
+    return sum / (3.0 * double(film.color.size()));
+}
+
+/// Recalled pictures of what moves are as far from the truth as those of other sample patterns.
+/// `move` puts a frame's pose into the scene.
+template <class Move>
+void expect_another_pattern(Scene scene, int spp, const Move& move) {
+    Reused reused(scene, 1u << 26, false, spp);
+    double squares = 0.0, others = 0.0, worst = 0.0, worst_other = 0.0, darker = 0.0;
+    for (int frame = 0; frame < 6; ++frame) {
+        move(scene, frame);
+        const Film recalled = reused.render();
+        if (frame == 0) continue;
+        EXPECT_GT(reused.cost.reuse.hits, reused.cost.samples / 2);
+        const Film truth = direct_picture(scene, 256, 0);
+        const ImageError error = compare_films(recalled, truth);
+        squares += error.rmse * error.rmse;
+        worst = std::max(worst, error.max);
+        darker += mean_of(recalled) - mean_of(truth);
+        for (const std::uint32_t seed : {1u, 2u, 3u}) {
+            const ImageError other = compare_films(direct_picture(scene, spp, seed), truth);
+            others += other.rmse * other.rmse / 3.0;
+            worst_other = std::max(worst_other, other.max);
+        }
+    }
+    // One sample of the pattern is the pixel's centre, of the cache any point of it. Many lie less
+    // evenly than a pattern's, which shows in single pixels.
+    EXPECT_LT(std::sqrt(squares), (spp == 1 ? 1.2 : 1.05) * std::sqrt(others));
+    EXPECT_LT(worst, 1.75 * worst_other);
+    EXPECT_LT(std::abs(darker / 5.0), spp == 1 ? 0.00075 : 0.0003);
+}
+
+class ReuseOfWhatMoves : public testing::TestWithParam<int> {};
+
+TEST_P(ReuseOfWhatMoves, IsAnotherSamplePattern) {
+    Scene scene = room();
+    scene.objects[0] = object("ball", sphere(1.0f, 16), "plastic", {{"roughness", {0.05f}}});
+    expect_another_pattern(scene, GetParam(), [](Scene& s, int frame) {
+        s.nodes[0].rotation = glm::angleAxis(0.06f * float(frame), glm::vec3(0.6f, 0.8f, 0.0f));
+        s.nodes[0].translation.x = 0.04 * frame;
+    });
+}
+
+TEST_P(ReuseOfWhatMoves, IsAnotherSamplePatternOfWhatBends) {
+    Scene scene = room();
+    MorphTarget longer;
+    for (const glm::vec3& P : scene.objects[0].mesh.P) {
+        longer.P.emplace_back(0.3f * P.y * P.y, 0.2f * P.y, 0.0f);
+    }
+    scene.objects[0].bends.targets = {longer};
+    scene.nodes[0].weights = {0.01f};
+    expect_another_pattern(scene, GetParam(), [](Scene& s, int frame) {
+        s.nodes[0].weights = {0.01f + 0.1f * float(frame)};
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, ReuseOfWhatMoves, testing::Values(1, 4, 16));
+
 }  // namespace
 }  // namespace estara
