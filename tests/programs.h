@@ -73,7 +73,7 @@ inline std::string done_in(const TemporaryFolder& folder, const std::string& lin
 inline std::string model(const std::string& name) {
     const std::string path = std::string(ESTARA_MODELS) + "/" + name;
     EXPECT_TRUE(std::filesystem::exists(path))
-        << path << " is missing: put the meshes of the models folder there";
+        << path << " is missing; the build makes it";
     return path;
 }
 

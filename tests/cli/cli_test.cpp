@@ -55,7 +55,7 @@ TEST_P(Cli, SaysWhatIsWrittenAndLeavesNothingAfterAFailure) {
     const std::string command = test::text_of(folder + "/command");
     if (command.find("$MODELS") != std::string::npos) {
         ASSERT_TRUE(std::filesystem::is_directory(ESTARA_MODELS))
-            << ESTARA_MODELS << " is missing: it holds the meshes of this case";
+            << ESTARA_MODELS << " is missing; the build makes it";
     }
     const Ran ran = test::run_in(temporary, command);
     if (ran.status != 0) {

@@ -18,10 +18,10 @@ int estimated_mib(const test::TemporaryFolder& folder, const std::string& bake) 
 
 TEST(Memory, OfABakeIsNoMoreThanEstimated) {
     const test::TemporaryFolder folder;
-    const std::string bunny = test::model("stanford-bunny.obj");
+    const std::string scan = test::model("scan.obj");
     for (const std::string shader : {"greenmarble", "wood"}) {  // three floats and four
         const std::string bake =
-            "estara-bake " + shader + " " + bunny + " --voxel-size 0.0003 --progress none";
+            "estara-bake " + shader + " " + scan + " --voxel-size 0.0003 --progress none";
         test::done_in(folder, bake + " -o a.vdb --stats a.json");
         const double peak = test::json_of(folder / "a.json").at("peak_memory").get<double>();
         const double estimate = estimated_mib(folder, bake) * 1048576.0;

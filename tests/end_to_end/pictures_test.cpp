@@ -1,49 +1,21 @@
 // From a scene to pictures, as a user does it: what is baked by default looks like direct
 // evaluation.
-#include <ostream>
-
 #include "../programs.h"
+#include "journeys.h"
 
 namespace estara {
 namespace {
 
 using test::done_in;
 using test::Image;
+using test::Journey;
 using test::TemporaryFolder;
-
-/// A scene and the bakes that it takes.
-struct Journey {
-    std::string name;
-    std::string scene;               ///< an example's name, or a file of the models folder
-    std::vector<std::string> bakes;  ///< shader and its parameters
-    std::string frames;
-    bool fills_the_frame = false;
-
-    friend void PrintTo(const Journey& j, std::ostream* out) { *out << j.name; }
-};
-
-std::vector<Journey> journeys() {
-    return {
-        {"StillLife",
-         "still-life",
-         {"wood", "stone", "greenmarble", "cobblestone"},
-         "1-48x20",
-         true},
-        {"Tumble", "tumble", {"wood"}, "1-48x20", true},
-        // The bunny is 0.15 units large, Igea and Spot 1 to 2.
-        {"BunnyOfGreenmarble", "stanford-bunny.obj", {"greenmarble --param veinfreq=20"}, "1-2"},
-        {"BunnyOfWood", "stanford-bunny.obj", {"wood --param ringscale=100"}, "1-2"},
-        {"IgeaOfStone", "igea.ply", {"stone --param scale=0.1"}, "1-2"},
-        {"IgeaOfSolidCobbles", "igea.ply", {"cobblestone --param txtscale=4"}, "1-2"},
-        {"SpotOfCobblesOnUv", "spot.obj", {"cobblestone"}, "1-2"},
-        {"SpotOfWood", "spot.obj", {"wood"}, "1-2"},
-    };
-}
 
 class Pictures : public ::testing::TestWithParam<Journey> {
 protected:
     std::string scene_file() const {
         const Journey& j = GetParam();
+        if (j.scene.find('/') != std::string::npos) return j.scene;
         if (j.scene.find('.') != std::string::npos) return test::model(j.scene);
         done_in(m_folder, "estara-scenes " + j.scene + " -o scene.glb");
         return "scene.glb";
@@ -130,7 +102,7 @@ TEST_P(Pictures, OfDefaultGridsAreThoseOfDirectEvaluation) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(From, Pictures, ::testing::ValuesIn(journeys()),
+INSTANTIATE_TEST_SUITE_P(From, Pictures, ::testing::ValuesIn(test::journeys()),
                          [](const auto& named) { return named.param.name; });
 
 }  // namespace

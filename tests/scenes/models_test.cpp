@@ -1,13 +1,18 @@
-// Real meshes: two as OBJ, one as PLY.
+// Meshes as people have them: two as OBJ, one as PLY.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 
+#include "../models/models.h"
 #include "estara/scenes/load.h"
 
 namespace estara {
 namespace {
+
+using test::expect_unit;
+using test::signed_volume;
+using test::smooth_share;
 
 Scene model(const std::string& name) {
     const std::string path = std::string(ESTARA_MODELS) + "/" + name;
@@ -15,38 +20,11 @@ Scene model(const std::string& name) {
     return load_scene(path);
 }
 
-/// Positive if the triangles' normals point outwards.
-double signed_volume(const Mesh& mesh) {
-    double six_volumes = 0.0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        six_volumes += glm::dot(glm::dvec3(mesh.P[t.x]),
-                                glm::cross(glm::dvec3(mesh.P[t.y]), glm::dvec3(mesh.P[t.z])));
-    }
-    return six_volumes / 6.0;
-}
-
-/// Share of the triangles whose vertex normals all lie on the side of the geometric one.
-double smooth_share(const Mesh& mesh) {
-    std::size_t agree = 0;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        const MeshPoint point = mesh_point(mesh, t, 1.0f / 3, 1.0f / 3);
-        bool all = true;
-        for (int k = 0; k < 3; ++k) {
-            all = all && glm::dot(mesh.N[mesh.triangles[t][k]], point.Ng) > 0.0f;
-        }
-        agree += all ? 1 : 0;
-    }
-    return double(agree) / double(mesh.triangles.size());
-}
-
-void expect_unit(const std::vector<glm::vec3>& normals) {
-    for (const glm::vec3& n : normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f);
-}
-
-TEST(Models, BunnyLoads) {
-    const Scene scene = model("stanford-bunny.obj");
+TEST(Models, AScanLoads) {
+    const Scene scene = model("scan.obj");
     const Mesh& mesh = scene.objects.at(0).mesh;
-    EXPECT_EQ(mesh.triangles.size(), 69451u);
+    EXPECT_EQ(mesh.P.size(), 35952u);
+    EXPECT_EQ(mesh.triangles.size(), 71238u);
     EXPECT_FALSE(mesh.has_uv());
     EXPECT_GT(signed_volume(mesh), 0.0);
     EXPECT_GT(smooth_share(mesh), 0.99);
@@ -65,11 +43,11 @@ TEST(Models, SpotLoadsWithTextureCoordinates) {
     expect_unit(mesh.N);
 }
 
-TEST(Models, IgeaLoadsFromItsTriangleStrip) {
-    const Scene scene = model("igea.ply");
+TEST(Models, AStripWithRestartsLoads) {
+    const Scene scene = model("strips.ply");
     const Mesh& mesh = scene.objects.at(0).mesh;
-    EXPECT_EQ(mesh.P.size(), 134345u);
-    EXPECT_EQ(mesh.triangles.size(), 268686u);  // = 2 V - 4: closed, like a sphere
+    EXPECT_EQ(mesh.P.size(), 133646u);
+    EXPECT_EQ(mesh.triangles.size(), 267288u);  // = 2 V - 4: closed, like a sphere
     EXPECT_GT(signed_volume(mesh), 0.0);
     EXPECT_GT(smooth_share(mesh), 0.99);
     expect_unit(mesh.N);
