@@ -20,12 +20,12 @@ public:
 
     Scene run() {
         read_nodes();
+        read_animations(m_model, m_ours, m_scene);
         for (std::size_t i = 0; i < m_model.nodes.size(); ++i) {
-            if (m_ours[i] >= 0) read_contents(m_model.nodes[i], m_ours[i]);
+            if (m_ours[i] >= 0) read_contents(m_model.nodes[i], i, m_ours[i]);
         }
         tell_left_out();
         if (m_scene.instances.empty()) fail("no triangles; the scene shows no mesh");
-        read_animations(m_model, m_ours, m_scene);
         add_what_is_missing();
         return std::move(m_scene);
     }
@@ -85,7 +85,9 @@ private:
                                  gltf_name("node", node.name, index)));
             }
             m_ours[index] = int(m_scene.nodes.size());
+            const bool below_hidden = step.parent >= 0 && m_hidden[std::size_t(step.parent)];
             m_scene.nodes.push_back(read_node(node, index, step.parent));
+            m_hidden.push_back(below_hidden || is_hidden(node));
             for (auto i = node.children.rbegin(); i != node.children.rend(); ++i) {
                 steps.push_back({*i, m_ours[index]});
             }
@@ -138,19 +140,61 @@ private:
 
     // --- what hangs on them ---
 
-    void read_contents(const tinygltf::Node& node, int ours) {
-        if (node.mesh != -1) {
-            const int skin = skin_of(node);
-            for (const int object : objects_of(node.mesh)) {
-                const bool follows = skin >= 0 && check_skin(object, skin);
-                m_scene.instances.push_back({object, ours, follows ? skin : -1});
-            }
-        }
+    void read_contents(const tinygltf::Node& node, std::size_t index, int ours) {
         if (node.camera != -1) read_camera(node.camera, ours);
+        if (m_hidden[std::size_t(ours)]) return;
+        if (node.mesh != -1) read_mesh(node, index, ours);
         const auto light = node.extensions.find("KHR_lights_punctual");
         if (light == node.extensions.end()) return;
-        const tinygltf::Value& index = light->second.Get("light");
-        read_light(index.IsInt() ? index.GetNumberAsInt() : -1, ours);
+        const tinygltf::Value& number = light->second.Get("light");
+        read_light(number.IsInt() ? number.GetNumberAsInt() : -1, ours);
+    }
+
+    void read_mesh(const tinygltf::Node& node, std::size_t index, int ours) {
+        warn_of_shader(node.extras_json_string, at("node", node.name, index), m_scene.warnings);
+        (void)gltf_element(m_model.meshes, node.mesh, m_scene.path, "mesh");
+        const Dequantization how =
+            dequantization_of(m_model, node, m_scene.nodes[std::size_t(ours)]);
+        const int skin = skin_of(node);
+        const std::vector<int>& objects = objects_of(node.mesh, how);
+        for (const int place : places_of(node, index, ours, how)) {
+            for (const int object : objects) {
+                const bool follows = skin >= 0 && check_skin(object, skin);
+                m_scene.instances.push_back({object, place, follows ? skin : -1});
+            }
+        }
+    }
+
+    /// The nodes that show a node's mesh: itself, or one below it for each of its instances, or one
+    /// that takes back what the mesh has been dequantised with.
+    std::vector<int> places_of(const tinygltf::Node& node, std::size_t index, int ours,
+                               const Dequantization& how) {
+        std::vector<Node> below = instances_of_node(m_model, node, at("node", node.name, index));
+        const bool is_instanced = node.extensions.contains("EXT_mesh_gpu_instancing");
+        if (!is_instanced && how.is_identity()) return {ours};
+        if (!is_instanced) below.resize(1);
+        std::vector<int> places;
+        for (Node& one : below) {
+            one.parent = ours;
+            one.name = m_scene.nodes[std::size_t(ours)].name;
+            one.weights = m_scene.nodes[std::size_t(ours)].weights;
+            one.weight_tracks = m_scene.nodes[std::size_t(ours)].weight_tracks;
+            places.push_back(int(m_scene.nodes.size()));
+            m_scene.nodes.push_back(std::move(one));
+            if (how.is_identity()) continue;
+            Node back;
+            back.parent = places.back();
+            back.name = m_scene.nodes.back().name;
+            back.weights = m_scene.nodes.back().weights;
+            back.weight_tracks = m_scene.nodes.back().weight_tracks;
+            glm::dmat4 there(1.0);
+            for (int c = 0; c < 3; ++c) there[c][c] = 1.0 / double(how.scale[c]);
+            there[3] = glm::dvec4(-glm::dvec3(how.translation) / glm::dvec3(how.scale), 1.0);
+            back.matrix = there;
+            places.back() = int(m_scene.nodes.size());
+            m_scene.nodes.push_back(std::move(back));
+        }
+        return places;
     }
 
     /// Index into m_scene.skins of a node's skin, read once however many nodes have it; or -1.
@@ -177,12 +221,14 @@ private:
 
     /// The objects that a mesh makes, one for each of its primitives of triangles; made once,
     /// however many nodes show the mesh.
-    const std::vector<int>& objects_of(int mesh_index) {
-        const auto [place, is_new] = m_objects.try_emplace(mesh_index);
+    const std::vector<int>& objects_of(int mesh_index, const Dequantization& how) {
+        const auto [place, is_new] = m_objects.try_emplace({mesh_index, how});
         if (!is_new) return place->second;
         const tinygltf::Mesh& mesh = gltf_element(m_model.meshes, mesh_index, m_scene.path, "mesh");
         const std::string where = at("mesh", mesh.name, std::size_t(mesh_index));
+        warn_of_shader(mesh.extras_json_string, where, m_scene.warnings);
         for (const tinygltf::Primitive& primitive : mesh.primitives) {
+            warn_of_shader(primitive.extras_json_string, where, m_scene.warnings);
             if (!has_triangles(primitive)) {
                 ++m_points_and_lines;
                 continue;
@@ -193,6 +239,7 @@ private:
             object.name = object.mesh_name;
             object.weights = property(mesh.weights, mesh.weights.size(), "weights", where);
             read_primitive(m_model, primitive, where, object);
+            dequantize(object, how);
             dress(object, primitive.material, where);
             place->second.push_back(int(m_scene.objects.size()));
             m_scene.objects.push_back(std::move(object));
@@ -303,9 +350,10 @@ private:
 
     tinygltf::Model m_model;
     Scene m_scene;
-    std::vector<int> m_ours;                    ///< our node by the file's; -1: not shown
-    std::map<int, std::vector<int>> m_objects;  ///< by mesh
-    std::map<int, int> m_skins;                 ///< index into m_scene.skins by index in the file
+    std::vector<int> m_ours;     ///< our node by the file's; -1: not shown
+    std::vector<bool> m_hidden;  ///< by our node, of those in the file
+    std::map<std::pair<int, Dequantization>, std::vector<int>> m_objects;  ///< by mesh
+    std::map<int, int> m_skins;  ///< index into m_scene.skins by index in the file
     int m_points_and_lines = 0, m_many_joints = 0, m_textured = 0, m_orthographic = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "loaders.h"
@@ -56,9 +57,44 @@ Skin read_skin(const tinygltf::Model& model, int index, const std::vector<int>& 
 /// Error if an object's vertices follow joints that a skin does not have.
 void check_joints(const Object& object, const Skin& skin, const std::string& where);
 
+/// KHR_node_visibility: whether a node hides itself and all below it.
+bool is_hidden(const tinygltf::Node& node);
+
+/// EXT_mesh_gpu_instancing: nodes to hang below one, each of which shows its mesh; none without.
+std::vector<Node> instances_of_node(const tinygltf::Model& model, const tinygltf::Node& node,
+                                    const std::string& where);
+
+/// What a node does to quantised positions to make them those of its mesh.
+///
+/// KHR_mesh_quantization: positions are integers, and a node brings them back to size. Patterns are
+/// painted in object space, so that this belongs into the mesh: the node's scale, if it is not
+/// animated, and its translation, if it does not turn or move (exporters give the node of a
+/// quantised mesh both).
+struct Dequantization {
+    glm::vec3 scale{1.0f}, translation{0.0f};
+    bool is_identity() const noexcept {
+        return scale == glm::vec3(1.0f) && translation == glm::vec3(0.0f);
+    }
+    bool operator<(const Dequantization& b) const noexcept {
+        const auto key = [](const Dequantization& d) {
+            return std::tie(d.scale.x, d.scale.y, d.scale.z, d.translation.x, d.translation.y,
+                            d.translation.z);
+        };
+        return key(*this) < key(b);
+    }
+};
+/// @param ours  the node as it has been read, with its keys
+Dequantization dequantization_of(const tinygltf::Model& model, const tinygltf::Node& node,
+                                 const Node& ours);
+void dequantize(Object& object, const Dequantization& how);
+
 /// What a material says: the shader and the colour. An index of -1 is no material.
 void read_material(const tinygltf::Model& model, int index, const std::string& where,
                    Object& object, std::vector<std::string>& warnings);
+
+/// Warns of a shader that is named where none is looked for.
+void warn_of_shader(const std::string& extras, const std::string& where,
+                    std::vector<std::string>& warnings);
 
 /// The scene's extras "ambient", if it has one.
 std::optional<glm::vec3> read_ambient(const tinygltf::Scene& scene, const std::string& where);

@@ -118,6 +118,7 @@ std::string_view json_of_binary(const std::string& path, std::string_view file) 
 bool is_supported(const std::string& extension) {
     const auto begins_with = [&](std::string_view head) { return extension.starts_with(head); };
     return extension == "KHR_lights_punctual" || extension == "KHR_mesh_quantization" ||
+           extension == "EXT_mesh_gpu_instancing" || extension == "KHR_node_visibility" ||
            begins_with("KHR_materials_") || begins_with("KHR_texture_") ||
            begins_with("EXT_texture_");
 }
@@ -133,12 +134,57 @@ void check_extensions(const std::string& path, const std::vector<std::string>& r
                             fmt::join(missing, ", ")));
 }
 
+/// A primitive's accessors without data of their own, though a compressed form stands beside them.
+/// tinygltf says "invalid bufferView" of some of them, and takes others for zeros.
+void check_compression(const std::string& path, std::string_view text) {
+    if (text.find("_compression") == std::string_view::npos) return;
+    const nlohmann::json file = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+    if (!file.is_object()) return;
+    const auto at = [](const nlohmann::json& of, const char* key) {
+        return of.is_object() && of.contains(key) ? of[key] : nlohmann::json();
+    };
+    const nlohmann::json accessors = at(file, "accessors");
+    for (const nlohmann::json& mesh : at(file, "meshes")) {
+        for (const nlohmann::json& primitive : at(mesh, "primitives")) {
+            const nlohmann::json index = at(at(primitive, "attributes"), "POSITION");
+            const bool compressed =
+                at(primitive, "extensions").contains("KHR_draco_mesh_compression");
+            if (!compressed || !index.is_number_unsigned()) continue;
+            const auto position = index.get<std::size_t>();
+            if (!accessors.is_array() || position >= accessors.size() ||
+                accessors[position].contains("bufferView")) {
+                continue;
+            }
+            const nlohmann::json name = at(mesh, "name");
+            throw Error(fmt::format(
+                "{}: mesh {}: compressed by KHR_draco_mesh_compression, which is not read; export "
+                "it without compression",
+                path, name.is_string() ? '"' + one_line(name.get<std::string>()) + '"' : "\"\""));
+        }
+    }
+    for (const nlohmann::json& view : at(file, "bufferViews")) {
+        for (const char* meshopt : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+            if (!at(view, "extensions").contains(meshopt)) continue;
+            const nlohmann::json buffer = at(view, "buffer"), buffers = at(file, "buffers");
+            const bool has_data = buffer.is_number_unsigned() && buffers.is_array() &&
+                                  buffer.get<std::size_t>() < buffers.size() &&
+                                  (buffers[buffer.get<std::size_t>()].contains("uri") ||
+                                   buffer.get<std::size_t>() == 0);
+            if (has_data) continue;
+            throw Error(fmt::format(
+                "{}: compressed by {}, which is not read; export it without compression", path,
+                meshopt));
+        }
+    }
+}
+
 void check_json(const std::string& path, std::string_view text) {
     JsonCheck check(text);
     if (!nlohmann::json::sax_parse(text.begin(), text.end(), &check)) {
         throw Error(fmt::format("{}: {}", path, check.problem()));
     }
     check_extensions(path, check.required());
+    check_compression(path, text);
 }
 
 /// What tinygltf left out, in one line. Not what it says of skins: these are not shown, and it

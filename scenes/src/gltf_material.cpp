@@ -1,6 +1,7 @@
 // How a glTF material wears a shader: extras {"shader": "wood", "params": {...}}, or its name.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,41 @@ std::string shader_of(const json& extras, const tinygltf::Material& material,
                             one_line(name.dump(-1, ' ', true))));
 }
 
+/// The shader that a material's name would mean if small and capital letters were alike, or "".
+std::string shader_almost_named(const std::string& material) {
+    const auto small = [](std::string text) {
+        for (char& c : text) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+        return text;
+    };
+    std::string stem = small(material);
+    const std::size_t dot = stem.rfind('.');
+    if (dot != std::string::npos && dot + 1 < stem.size() &&
+        stem.find_first_not_of("0123456789", dot + 1) == std::string::npos) {
+        stem.resize(dot);
+    }
+    for (const ShaderInfo& info : all_shaders()) {
+        if (small(std::string(info.name)) == stem) return std::string(info.name);
+    }
+    return "";
+}
+
+/// Parameters beside "shader" instead of in "params", as Blender's custom properties are flat.
+void warn_of_flat_parameters(const json& extras, const std::string& shader,
+                             const std::string& where, std::vector<std::string>& warnings) {
+    const ShaderInfo* const info = find_shader(shader);
+    if (info == nullptr) return;  // which binding will tell
+    std::string flat;
+    for (const auto& [key, value] : extras.items()) {
+        const bool is_parameter =
+            std::any_of(info->params.begin(), info->params.end(),
+                        [&name = key](const ParamInfo& p) { return p.name == name; });
+        if (is_parameter) flat += (flat.empty() ? "\"" : ", \"") + key + '"';
+    }
+    if (flat.empty()) return;
+    warnings.push_back(fmt::format(
+        "{}: {} beside \"shader\": not used; parameters go into \"params\": {{...}}", where, flat));
+}
+
 std::vector<Setting> settings_of(const json& extras, const std::string& where) {
     std::vector<Setting> settings;
     if (!extras.contains("params")) return settings;
@@ -80,9 +116,25 @@ void read_material(const tinygltf::Model& model, int index, const std::string& w
     object.choice.name = shader_of(extras, material, where);
     if (object.wears_shader()) {
         object.choice.settings = settings_of(extras, where);
-    } else if (extras.contains("params")) {
+        warn_of_flat_parameters(extras, object.choice.name, where, warnings);
+        return;
+    }
+    if (extras.contains("params")) {
         warnings.push_back(fmt::format("{}: \"params\" without a \"shader\"", where));
     }
+    const std::string meant = shader_almost_named(material.name);
+    if (meant.empty()) return;
+    warnings.push_back(
+        fmt::format("{}: wears no shader; its name would have to be \"{}\"", where, meant));
+}
+
+void warn_of_shader(const std::string& text, const std::string& where,
+                    std::vector<std::string>& warnings) {
+    const json extras = extras_of(text);
+    if (!extras.contains("shader") && !extras.contains("params")) return;
+    warnings.push_back(
+        fmt::format("{}: extras \"{}\" not used; a shader is named in the extras of the material",
+                    where, extras.contains("shader") ? "shader" : "params"));
 }
 
 std::optional<glm::vec3> read_ambient(const tinygltf::Scene& scene, const std::string& where) {

@@ -40,6 +40,13 @@ T value_at(const Track<T>& track, double time) {
     const bool cubic = track.interpolation == Interpolation::cubic_spline;
     const auto key = [&](std::size_t i) { return track.values[cubic ? 3 * i + 1 : i]; };
     const std::size_t last = track.times.size() - 1;
+    // A step's key is reached at its frame, though the file has its time as a float: of f / fps, or
+    // of f times a float that is 1 / fps.
+    if (track.interpolation == Interpolation::step) {
+        const float rounded = float(time);
+        time += 2.0 * (double(std::nextafter(rounded, std::numeric_limits<float>::infinity())) -
+                       double(rounded));
+    }
     if (!(time > double(track.times.front()))) return finished(key(0));  // also for NaN
     if (time >= double(track.times[last])) return finished(key(last));
 

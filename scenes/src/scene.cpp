@@ -104,16 +104,24 @@ std::vector<int> objects_wearing(const Scene& scene, const std::string& shader) 
 int find_camera(const Scene& scene, const std::string& name) {
     if (scene.cameras.empty()) throw Error(fmt::format("{}: the scene has no camera", scene.path));
     if (name.empty()) return 0;
+    // Blender shows the name of the node, and often gives all cameras' data one name.
+    const auto node_name = [&](const SceneCamera& camera) {
+        return scene.nodes[std::size_t(camera.node)].name;
+    };
+    std::vector<int> by_node, by_data;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
         const SceneCamera& camera = scene.cameras[i];
-        if (camera.name == name) return int(i);
-        // Blender shows the name of the node, not that of the camera.
-        if (scene.nodes[std::size_t(camera.node)].name == name) return int(i);
-        names.push_back(camera.name);
+        const std::string node = node_name(camera);
+        if (node == name) by_node.push_back(int(i));
+        if (camera.name == name) by_data.push_back(int(i));
+        names.push_back(node == camera.name ? node : fmt::format("{} ({})", node, camera.name));
     }
-    throw Error(
-        fmt::format("{}: no camera '{}'; the scene has: {}", scene.path, name, list(names)));
+    const std::vector<int>& found = by_node.empty() ? by_data : by_node;
+    if (found.size() == 1) return found.front();
+    throw Error(fmt::format("{}: {} '{}'; the scene has: {}", scene.path,
+                            found.empty() ? "no camera" : fmt::format("{} cameras", found.size()),
+                            name, list(names)));
 }
 
 std::vector<int> instances_of(const Scene& scene, int object) {

@@ -381,13 +381,13 @@ TEST_F(Gltf, SaysWhatItDoesNotShow) {
     EXPECT_THAT(
         load().warnings,
         ElementsAre(
+            "a.gltf: animation 1: 1 channels move what an earlier animation moves; not shown",
+            "a.gltf: animation 2: 1 channels move neither place, rotation, scale nor shape; not "
+            "shown",
             "a.gltf: mesh \"square\": its node has a skin, but its vertices follow no joints; "
             "shown "
             "without",
             "a.gltf: not shown: 1 primitives of points or lines",
-            "a.gltf: animation 1: 1 channels move what an earlier animation moves; not shown",
-            "a.gltf: animation 2: 1 channels move neither place, rotation, scale nor shape; not "
-            "shown",
             "a.gltf: no camera; one that goes round the scene in frames 1-48 is added",
             "a.gltf: no light; a key and a fill light are added"));
 }

@@ -54,6 +54,19 @@ TEST(Pose, HoldsTheEndsBeforeAndAfter) {
               glm::vec3(2, 0, 0));
 }
 
+TEST(Pose, StepsAtTheFrameOfAKeyThatIsAFloat) {
+    for (const double fps : {24.0, 25.0, 30.0, 59.94}) {
+        for (int frame = 1; frame <= 500; ++frame) {
+            // As exporters write it: rounded, or multiplied in float.
+            for (const float key : {float(frame / fps), float(frame) * float(1.0 / fps)}) {
+                const Node node = moved(Interpolation::step, {0, key}, {{1, 0, 0}, {5, 0, 0}});
+                EXPECT_EQ(place(node, frame / fps).x, 5.0f) << frame << " at " << fps;
+                EXPECT_EQ(place(node, (frame - 0.01) / fps).x, 1.0f) << frame << " at " << fps;
+            }
+        }
+    }
+}
+
 TEST(Pose, StepsAtTheKey) {
     const Node node = moved(Interpolation::step, {1, 2}, {{1, 0, 0}, {5, 0, 0}});
     EXPECT_EQ(place(node, 1.999), glm::vec3(1, 0, 0));

@@ -71,10 +71,23 @@ TEST(FindCamera, KnowsNamesAndTakesTheFirstForNone) {
     EXPECT_EQ(find_camera(room(), ""), 0);
     EXPECT_EQ(find_camera(room(), "right"), 1);
     EXPECT_EQ(message_of([] { find_camera(room(), "top"); }),
-              "room.glb: no camera 'top'; the scene has: left, right");
+              "room.glb: no camera 'top'; the scene has: node.vase (left), node.table (right)");
     Scene dark = room();
     dark.cameras.clear();
     EXPECT_EQ(message_of([&] { find_camera(dark, ""); }), "room.glb: the scene has no camera");
+}
+
+TEST(FindCamera, TakesTheNodesNameFirstAndNoneThatIsAmbiguous) {
+    Scene scene = room();  // as Blender writes it: all cameras' data are named alike
+    scene.nodes[std::size_t(scene.cameras[0].node)].name = "Camera";
+    for (SceneCamera& camera : scene.cameras) camera.name = "Camera";
+    scene.cameras[1].node = int(scene.nodes.size());
+    scene.nodes.emplace_back().name = "Camera.001";
+    EXPECT_EQ(find_camera(scene, "Camera"), 0);
+    EXPECT_EQ(find_camera(scene, "Camera.001"), 1);
+    scene.nodes[std::size_t(scene.cameras[0].node)].name = "front";
+    EXPECT_EQ(message_of([&] { find_camera(scene, "Camera"); }),
+              "room.glb: 2 cameras 'Camera'; the scene has: front (Camera), Camera.001 (Camera)");
 }
 
 TEST(BindChoice, TakesTheSettings) {
