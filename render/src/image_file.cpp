@@ -1,6 +1,7 @@
 #include "estara/render/image_file.h"
 
 #include <OpenImageIO/color.h>
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -113,18 +114,24 @@ std::string first_line(std::string text) {
     return text.empty() ? "the disk may be full" : text;
 }
 
-void write_pixels(const std::string& temporary, const std::string& path, OIIO::ImageSpec spec,
+/// Encodes in memory: OpenImageIO does not notice that a PNG has been cut short on its way to the
+/// disk.
+void write_pixels(PendingFile& file, const std::string& path, OIIO::ImageSpec spec,
                   OIIO::TypeDesc type, const void* pixels) {
+    const std::string& temporary = file.path();
+    OIIO::Filesystem::IOVecOutput bytes;
     spec.attribute("Software", fmt::format("estara-render {}", version));
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(temporary);
     if (!output) {
         throw Error(fmt::format("{}: cannot be written: {}", path, first_line(OIIO::geterror())),
                     ExitStatus::failed);
     }
-    if (!output->open(temporary, spec) || !output->write_image(type, pixels) || !output->close()) {
+    if (!output->set_ioproxy(&bytes) || !output->open(temporary, spec) ||
+        !output->write_image(type, pixels) || !output->close()) {
         throw Error(fmt::format("{}: cannot be written: {}", path, first_line(output->geterror())),
                     ExitStatus::failed);
     }
+    file.write({reinterpret_cast<const char*>(bytes.buffer().data()), bytes.buffer().size()});
 }
 
 }  // namespace
@@ -133,10 +140,10 @@ void write_image(const std::string& path, ImageFormat format, const Film& film) 
     PendingFile file(path);
     if (format == ImageFormat::exr) {
         const ExrPixels pixels = exr_pixels(film);
-        write_pixels(file.path(), path, pixels.spec, OIIO::TypeFloat, pixels.values.data());
+        write_pixels(file, path, pixels.spec, OIIO::TypeFloat, pixels.values.data());
     } else {
         const std::vector<std::uint8_t> bytes = png_pixels(film);
-        write_pixels(file.path(), path, png_spec(film), OIIO::TypeUInt8, bytes.data());
+        write_pixels(file, path, png_spec(film), OIIO::TypeUInt8, bytes.data());
     }
     file.commit();
 }

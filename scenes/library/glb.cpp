@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <glm/gtc/type_precision.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "estara/scenes/error.h"
 #include "estara/scenes/program.h"
@@ -270,13 +270,12 @@ void GlbBuilder::set_ambient(const glm::dvec3& ambient) {
 
 void GlbBuilder::write(const std::string& path) const {
     PendingFile pending(path);
-    std::ofstream file(pending.path(), std::ios::binary);
+    std::ostringstream file;
     constexpr bool pretty = false, binary = true;
     tinygltf::TinyGLTF writer;
     const bool written = writer.WriteGltfSceneToStream(&m_impl->model, file, pretty, binary);
-    file.close();
-    if (!written || !file)
-        throw Error(path + ": cannot be written whole; is the disk full?", ExitStatus::failed);
+    if (!written || !file) throw Error(path + ": cannot be made", ExitStatus::failed);
+    pending.write(file.view());
     pending.commit();
 }
 

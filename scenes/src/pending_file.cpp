@@ -1,7 +1,10 @@
 // A file that appears under its name only when it is whole.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include <array>
 #include <atomic>
@@ -9,8 +12,9 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <mutex>
 #include <random>
+#include <set>
 
 #include "estara/scenes/program.h"
 
@@ -89,15 +93,72 @@ private:
     std::array<Place, 16> m_places;
 };
 
-/// A name that no other program, here or on another machine of the same disk, has taken.
+/// What tells this machine's temporary files from those of others on a shared disk.
+std::string machine_tag() {
+    std::array<char, 256> name{};
+    ::gethostname(name.data(), name.size() - 1);
+    return fmt::format("{:08x}", XXH32(name.data(), std::strlen(name.data()), 0));
+}
+
+/// ".STEM.TAG-RANDOM.tmp.EXT"
+std::string temporary_name(const fs::path& path, unsigned random) {
+    return fmt::format(".{}.{}-{:08x}.tmp{}", path.stem().string(), machine_tag(), random,
+                       path.extension().string());
+}
+
+bool is_our_temporary_name(const std::string& name) {
+    const std::size_t tmp = name.rfind(".tmp");
+    const std::string tag = '.' + machine_tag() + '-';
+    constexpr std::size_t digits = 8;
+    if (name.empty() || name[0] != '.' || tmp == std::string::npos || tmp < tag.size() + digits) {
+        return false;
+    }
+    return name.compare(tmp - digits - tag.size(), tag.size(), tag) == 0 &&
+           name.find_first_not_of("0123456789abcdef", tmp - digits) == tmp;
+}
+
+/// Removes what programs that were killed on this machine have left in a folder: files whose lock
+/// nobody holds. The system frees a lock with its process, however that ends.
+void remove_abandoned(const fs::path& folder) {
+    static std::mutex mutex;
+    static std::set<std::string> done;  // a folder may hold as many frames as a film has
+    {
+        const std::lock_guard lock(mutex);
+        if (!done.insert(fs::absolute(folder).string()).second) return;
+    }
+    std::error_code code;
+    for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
+        if (!is_our_temporary_name(it->path().filename().string())) continue;
+        const int file = ::open(it->path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+        if (file < 0) continue;
+        if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(it->path().c_str());
+        ::close(file);
+    }
+}
+
+/// Creates and locks a file of a name that no other program, here or on another machine of the same
+/// disk, has taken. -1 with errno if it cannot be.
 int create_beside(const fs::path& folder, const fs::path& path, std::string& name) {
     std::random_device random;
     for (int attempt = 0;; ++attempt) {
-        const std::string file = fmt::format(".{}.{:08x}.tmp{}", path.stem().string(), random(),
-                                             path.extension().string());
+        const std::string file = temporary_name(path, random());
         name = (path.has_parent_path() ? folder / file : fs::path(file)).string();
+        // Before it is there: a signal in between finds nothing to remove, or it.
+        Interrupted::instance().add(name);
         const int opened = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (opened >= 0 || errno != EEXIST || attempt == 100) return opened;
+        struct stat status {};
+        if (opened >= 0) {
+            // Where locks are not to be had (some network disks) nobody removes it either.
+            const bool locked = ::flock(opened, LOCK_EX | LOCK_NB) == 0;
+            // Another may have taken it for abandoned before it was locked.
+            const bool there = ::fstat(opened, &status) == 0 && status.st_nlink > 0;
+            if (there && (locked || errno != EWOULDBLOCK)) return opened;
+            ::close(opened);
+        }
+        const int why = errno;
+        Interrupted::instance().remove(name);
+        errno = why;
+        if ((opened < 0 && why != EEXIST) || attempt == 100) return -1;
     }
 }
 
@@ -113,17 +174,17 @@ PendingFile::PendingFile(std::string final_path) : m_final(std::move(final_path)
     }
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     make_folder(folder, m_final);
-    const int file = create_beside(folder, path, m_path);
-    if (file < 0) {
+    remove_abandoned(folder);
+    m_file = create_beside(folder, path, m_path);
+    if (m_file < 0) {
         throw Error(fmt::format("{}: cannot write to the folder {}: {}", m_final, folder.string(),
                                 std::strerror(errno)));
     }
-    ::close(file);
-    Interrupted::instance().add(m_path);
 }
 
 PendingFile::~PendingFile() {
     if (!m_committed) ::unlink(m_path.c_str());
+    ::close(m_file);
     Interrupted::instance().remove(m_path);
 }
 
@@ -138,15 +199,22 @@ void PendingFile::commit() {
     sync(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
+void PendingFile::write(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(m_file, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            throw Error(fmt::format("{}: cannot be written: {}", m_final,
+                                    written < 0 ? std::strerror(errno) : "the disk takes no more"),
+                        ExitStatus::failed);
+        }
+        bytes.remove_prefix(std::size_t(written));
+    }
+}
+
 void write_text(const std::string& path, const std::string& text) {
     PendingFile file(path);
-    std::ofstream out(file.path(), std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-        throw Error(fmt::format("{}: cannot be written; the disk may be full", path),
-                    ExitStatus::failed);
-    }
+    file.write(text);
     file.commit();
 }
 

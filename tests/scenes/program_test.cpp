@@ -105,7 +105,7 @@ protected:
 TEST_F(Pending, AppearsUnderItsNameWhenCommitted) {
     write_file("a.exr", "old");
     PendingFile file("a.exr");
-    EXPECT_THAT(file.path(), testing::MatchesRegex("\\.a\\.[0-9a-f]+\\.tmp\\.exr"));
+    EXPECT_THAT(file.path(), testing::MatchesRegex("\\.a\\.[0-9a-f]+-[0-9a-f]+\\.tmp\\.exr"));
     write_file(file.path(), "new");
     EXPECT_EQ(contents("a.exr"), "old");
     file.commit();
@@ -125,7 +125,8 @@ TEST_F(Pending, LeavesNothingIfGivenUp) {
 
 TEST_F(Pending, MakesTheFoldersItNeeds) {
     PendingFile file("frames/left/0001.exr");
-    EXPECT_THAT(file.path(), testing::MatchesRegex("frames/left/\\.0001\\.[0-9a-f]+\\.tmp\\.exr"));
+    EXPECT_THAT(file.path(),
+                testing::MatchesRegex("frames/left/\\.0001\\.[0-9a-f]+-[0-9a-f]+\\.tmp\\.exr"));
     file.commit();
     EXPECT_TRUE(std::filesystem::exists("frames/left/0001.exr"));
 }
@@ -138,6 +139,36 @@ TEST_F(Pending, LeavesNothingIfInterrupted) {
     };
     EXPECT_EXIT(interrupted(), testing::KilledBySignal(SIGTERM), "");
     EXPECT_EQ(files_here(), 0);
+}
+
+TEST_F(Pending, OfKilledProgramsAreRemovedAndOthersStay) {
+    std::string abandoned;
+    const int child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        new PendingFile("b.exr");  // not destroyed
+        std::_Exit(0);
+    }
+    ::waitpid(child, nullptr, 0);
+    EXPECT_EQ(files_here(), 1);
+    write_file(".b.tmp.exr", "a user's own");
+    write_file(".b.0123abcd.tmp.exr", "as well");
+    PendingFile held("a.exr");
+    EXPECT_EQ(files_here(), 3);  // the abandoned one is gone
+    const int other = ::fork();
+    ASSERT_GE(other, 0);
+    if (other == 0) {
+        std::filesystem::create_directory("c");
+        std::filesystem::current_path("c");  // another name of the same folder
+        const PendingFile beside("../a.exr");
+        std::_Exit(std::filesystem::exists("../" + held.path()) ? 0 : 1);
+    }
+    int status = -1;
+    ::waitpid(other, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 0) << "a live program's file was removed";
+    held.write("new");
+    held.commit();
+    EXPECT_EQ(contents("a.exr"), "new");
 }
 
 TEST_F(Pending, SaysWhyItCannotBe) {

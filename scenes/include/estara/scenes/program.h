@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -63,9 +64,10 @@ private:
 };
 
 /// Where a file is written before it is whole: beside the final name, same ending
-/// (".name.PID.tmp.exr"). Moved into place by commit(); removed by the destructor otherwise, so
+/// (".name.MACHINE-RANDOM.tmp.exr"). Moved into place by commit(); removed by the destructor otherwise, so
 /// that nothing half-written is ever seen under the final name. Removed too if the program is
-/// interrupted (SIGINT, SIGTERM, SIGHUP).
+/// interrupted (SIGINT, SIGTERM, SIGHUP); what killed programs have left is removed by the next one
+/// on the same machine that writes to the folder.
 class PendingFile {
 public:
     /// Creates missing parent folders. Error (bad_input) if the folder cannot be made or written
@@ -75,11 +77,14 @@ public:
     PendingFile(const PendingFile&) = delete;
     PendingFile& operator=(const PendingFile&) = delete;
     const std::string& path() const noexcept { return m_path; }
+    /// Appends bytes. Error (failed) if not all of them arrive.
+    void write(std::string_view bytes);
     /// fsync and rename. Error (failed) if either fails.
     void commit();
 
 private:
     std::string m_final, m_path;
+    int m_file = -1;  ///< open and locked as long as this lives
     bool m_committed = false;
 };
 
