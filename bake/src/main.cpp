@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "estara/bake/run.h"
+#include "estara/scenes/program.h"
 
 int main(int argc, char** argv) {
     return estara::run_program("estara-bake", [&] {
@@ -13,7 +14,7 @@ int main(int argc, char** argv) {
         }
         const auto result = [](const std::string& text) { std::puts(text.c_str()); };
         const auto message = [](const std::string& text) {
-            std::fprintf(stderr, "estara-bake: %s\n", text.c_str());
+            std::fprintf(stderr, "%s\n", estara::message_line("estara-bake", text).c_str());
         };
         estara::bake::run(options, {result, message});
     });

@@ -59,6 +59,18 @@ std::vector<double> sizes_from_camera(const Scene& scene, const Options& options
                                  options.fps, options.resolution.x, options.resolution.y);
 }
 
+/// Error for an object so small that squares of its lengths, or of a voxel's, are no floats.
+void check_object(const Job& job) {
+    constexpr double least = 1e-12;
+    const Box box = bounds(job.object->mesh);
+    const double diagonal = glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
+    if (diagonal >= least) return;
+    throw Error(diagonal > 0.0
+                    ? fmt::format("it measures {:.4g}; what is smaller than {:.0e} cannot be baked",
+                                  diagonal, least)
+                    : "all of it is one point");
+}
+
 void check_size(const Job& job, double size) {
     const double diagonal = bounds(job.object->mesh).diagonal();
     if (size <= diagonal) return;
@@ -128,6 +140,7 @@ std::vector<Job> plan(const Scene& scene, const Options& options,
         const Object& object = scene.objects[std::size_t(index)];
         jobs.push_back(
             {&object, bind_solid(choose(object, options), object.mesh.has_uv()), {}, {}});
+        naming(jobs.back(), [&] { check_object(jobs.back()); });
     }
     if (options.max_error) return jobs;
     if (!options.voxel_size) sizes = sizes_from_camera(scene, options);

@@ -41,12 +41,28 @@ void put(GridBase& to, const std::string& name, const T& value) {
     to.insertMeta(name, openvdb::TypedMetadata<T>(value));
 }
 
+/// Uniform scale and translation. OpenVDB's own makers of transforms refuse voxels below 1.4e-5 as
+/// if they had no size; a transform that is read has none of their checks.
+openvdb::math::Transform::Ptr lattice_transform(double voxel, const glm::dvec3& origin) {
+    using openvdb::Vec3d;
+    const Vec3d scale(voxel), translation(origin.x, origin.y, origin.z);
+    std::stringstream bytes;
+    openvdb::io::setCurrentVersion(bytes);
+    openvdb::writeString(bytes, openvdb::math::UniformScaleTranslateMap::mapType());
+    // In the order of ScaleTranslateMap::read().
+    const Vec3d inverse(1.0 / voxel);
+    for (const Vec3d& v : {translation, scale, scale, inverse, inverse * inverse, 0.5 * inverse}) {
+        bytes.write(reinterpret_cast<const char*>(&v), sizeof v);
+    }
+    auto transform = openvdb::math::Transform::createLinearTransform();
+    transform->read(bytes);
+    return transform;
+}
+
 /// What every grid of an object says about itself.
 void describe(const TextureGrid& from, int level, bool half, GridBase& to) {
     const double voxel = std::ldexp(from.voxel_size, level);
-    auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-    transform->postTranslate({from.origin.x, from.origin.y, from.origin.z});
-    to.setTransform(transform);
+    to.setTransform(lattice_transform(voxel, from.origin));
     to.setSaveFloatAsHalf(half);
     const std::string tool = from.tool_version.empty() ? version : from.tool_version;
     to.setCreator("estara-bake " + tool);

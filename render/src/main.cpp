@@ -7,7 +7,7 @@
 namespace {
 
 void say(const std::string& message) {
-    std::fprintf(stderr, "estara-render: %s\n", message.c_str());
+    std::fprintf(stderr, "%s\n", estara::message_line("estara-render", message).c_str());
 }
 
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }

@@ -147,8 +147,11 @@ Json settings_json(const RunRecord& run) {
     return json;
 }
 
-std::string times(double slow, double fast) {
-    return fast > 0.0 ? fmt::format("{:.2f}", slow / fast) : "-";
+/// How `ours` compares to `theirs`, both seconds, in words: a ratio below 1 is easily misread.
+std::string pace(double theirs, double ours) {
+    if (!(theirs > 0.0 && ours > 0.0)) return "not measured";
+    if (ours > theirs) return fmt::format("slower: {:.2f} times the time", ours / theirs);
+    return fmt::format("{:.2f} times as fast", theirs / ours);
 }
 
 std::string seconds(const Spread& s) {
@@ -244,14 +247,14 @@ std::string comparison_text(const RunRecord& run) {
         predicted > 0.0 ? fmt::format(", equations 3 and 4 predict {:.2f}", predicted) : "";
     return fmt::format(
         "against direct, {}: {} (p99.9 of the worst frame)\n"
-        "whole frame: {} {}, direct {}, {} times as fast; "
-        "view-independent shading: {} {}, direct {}, {} times as fast; "
-        "all but rays to the eye: {} times as fast{}\n",
+        "whole frame: {} {}, direct {}, {}; "
+        "view-independent shading: {} {}, direct {}, {}; "
+        "all but rays to the eye: {}{}\n",
         counted(run.frames.size()), error_text(*s.error), strategy, seconds(s.frame),
-        seconds(*s.direct_frame), times(s.direct_frame->median, s.frame.median), strategy,
+        seconds(*s.direct_frame), pace(s.direct_frame->median, s.frame.median), strategy,
         seconds(s.evaluation), seconds(*s.direct_evaluation),
-        times(s.direct_evaluation->median, s.evaluation.median),
-        times(s.direct_shading->median, s.shading.median), promise);
+        pace(s.direct_evaluation->median, s.evaluation.median),
+        pace(s.direct_shading->median, s.shading.median), promise);
 }
 
 std::string result_line(const RunRecord& run) {

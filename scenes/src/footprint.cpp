@@ -97,8 +97,14 @@ std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int c
 std::vector<double> automatic_voxel_sizes(const Scene& scene, RayScene& rays, int camera,
                                           const FrameRange& frames, double fps, int width,
                                           int height) {
+    // A key at the end of a day would otherwise take a day.
+    constexpr int most_frames = 256;
+    FrameRange looked_at = frames;
+    if (frames.count() > most_frames) {
+        looked_at.step *= (frames.count() + most_frames - 1) / most_frames;
+    }
     const std::vector<float> footprints =
-        smallest_footprints(scene, rays, camera, frames, fps, width, height);
+        smallest_footprints(scene, rays, camera, looked_at, fps, width, height);
     std::vector<double> sizes;
     for (std::size_t i = 0; i < footprints.size(); ++i) {
         const Mesh& mesh = scene.objects[i].mesh;

@@ -207,7 +207,7 @@ bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, 
 
 std::string gltf_name(const char* kind, const std::string& name, std::size_t index) {
     return name.empty() ? fmt::format("{} {}", kind, index)
-                        : fmt::format("{} \"{}\"", kind, one_line(name));
+                        : fmt::format("{} \"{}\"", kind, one_line(name, longest_name));
 }
 
 void fail_no_element(const std::string& where, const char* what, int i, std::size_t count) {

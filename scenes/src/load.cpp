@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <string_view>
 
 #include "loaders.h"
 
@@ -71,6 +73,27 @@ BoundShaderPtr shader_of(const Object& object) {
     return bind_choice(plain, object.mesh.has_uv());
 }
 
+/// The farthest coordinate that rays can be traced to: Embree 3 gives up at 1.844e18.
+constexpr float farthest = 1e18f;
+
+/// Error for a vertex that no ray can be traced to.
+void check_extent(const Scene& scene) {
+    for (const Object& object : scene.objects) {
+        const auto check = [&](const std::vector<glm::vec3>& vertices, const char* what) {
+            for (const glm::vec3& P : vertices) {
+                for (int c = 0; c < 3; ++c) {
+                    if (std::abs(P[c]) <= farthest) continue;
+                    throw Error(fmt::format(
+                        "{}: mesh \"{}\": a {} of {:.3g}; coordinates up to {:.0e} can be traced",
+                        scene.path, one_line(object.mesh_name), what, P[c], farthest));
+                }
+            }
+        };
+        check(object.mesh.P, "coordinate");
+        for (const MorphTarget& target : object.bends.targets) check(target.P, "displacement");
+    }
+}
+
 /// Binds every object's shader; what is wrong with any of them becomes one Error.
 void bind_shaders(Scene& scene) {
     std::set<std::string> told;  // objects may share a material
@@ -119,21 +142,30 @@ std::string read_file(const std::string& path) {
     return bytes;
 }
 
-std::string one_line(const std::string& text) {
-    constexpr std::size_t longest = 300;
+std::string one_line(const std::string& text, std::size_t longest) {
+    constexpr unsigned char del = 0x7f, first_of_c1 = 0xc2, end_of_c1 = 0xa0;
     std::string line;
-    for (const char c : text) {
-        const bool blank = static_cast<unsigned char>(c) <= ' ';
-        if (!blank) line += c;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        // U+0080 to U+009F, in UTF-8 two bytes, are control characters too.
+        const bool c1 = byte == first_of_c1 && i + 1 < text.size() &&
+                        static_cast<unsigned char>(text[i + 1]) < end_of_c1;
+        const bool blank = byte <= ' ' || byte == del || c1;
+        i += c1 ? 1 : 0;
+        if (!blank) line += text[i];
         if (blank && !line.empty() && line.back() != ' ') line += ' ';
-        if (line.size() >= longest) return line + "...";
     }
     while (!line.empty() && line.back() == ' ') line.pop_back();
-    return line;
+    if (line.size() <= longest) return line;
+    constexpr std::string_view more = "...";
+    std::size_t end = longest - more.size();
+    while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xc0) == 0x80) --end;  // in a letter
+    return line.substr(0, end) + std::string(more);
 }
 
 Scene load_scene(const std::string& path) {
     Scene scene = read(path);
+    check_extent(scene);
     make_names_unique(scene.objects);
     bind_shaders(scene);
     return scene;

@@ -18,8 +18,10 @@ Mesh read_ply(const std::string& path);
 /// Contents of a file. Error if it cannot be read.
 std::string read_file(const std::string& path);
 
-/// Text of somebody else's in one line of at most 300 characters.
-std::string one_line(const std::string& text);
+/// Text of somebody else's in one line of so many bytes at most, without control characters.
+std::string one_line(const std::string& text, std::size_t longest = 300);
+/// Bytes that a name of somebody else's may take in a message.
+inline constexpr std::size_t longest_name = 100;
 
 /// Normals of the vertices: mean of the triangles around, weighted by their angle there
 /// (Thürmer & Wüthrich 1998, "Computing Vertex Normals from Polygonal Facets"). Unit length;

@@ -20,11 +20,15 @@ namespace {
 void print(const char* program, const std::string& message) {
     std::istringstream lines(message);
     for (std::string line; std::getline(lines, line);) {
-        std::fputs(fmt::format("{}: {}\n", program, line).c_str(), stderr);
+        std::fputs((message_line(program, line) + '\n').c_str(), stderr);
     }
 }
 
 }  // namespace
+
+std::string message_line(const std::string& program, const std::string& message) {
+    return one_line(program + ": " + message);
+}
 
 int run_program(const char* program, const std::function<void()>& body) {
     // A limit on the size of files is then a write that fails, as on a full disk.

@@ -381,6 +381,7 @@ void in_batches(std::span<const Ray> rays, const Trace& trace) {
 struct RayScene::Impl {
     const Scene& scene;
     std::vector<ScenePtr> meshes;                  ///< by object
+    std::vector<float> sizes;                      ///< by object: largest coordinate
     ScenePtr top;                                  ///< geometry i is instance i
     std::vector<GeometryPtr> instances;            ///< by instance
     std::vector<std::unique_ptr<BentScene>> bent;  ///< by instance; null until it first bends
@@ -389,6 +390,7 @@ struct RayScene::Impl {
     glm::dvec3 origin{0.0};
 
     explicit Impl(const Scene& s) : scene(s), meshes(s.objects.size()), bent(s.instances.size()) {
+        for (const Object& object : s.objects) sizes.push_back(largest_coordinate(object.mesh.P));
         tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
             meshes[i] = mesh_scene(scene.objects[i], name_of(i));
         });
@@ -428,6 +430,7 @@ struct RayScene::Impl {
         const RTCGeometry geometry = instances[i].get();
         const glm::mat4& world_from_object = pose.world_from_instance[i];
         if (!can_be_hit(world_from_object)) return rtcDisableGeometry(geometry);
+        check_extent(i, pose);
         const RTCScene now = structure_of(i, pose.bent[i].get());
         if (now != shown[i]) rtcSetGeometryInstancedScene(geometry, now);
         shown[i] = now;
@@ -435,6 +438,29 @@ struct RayScene::Impl {
         rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
                                 glm::value_ptr(world_from_object));
         rtcCommitGeometry(geometry);
+    }
+
+    /// Embree's assertions abort the program at 1.844e18. Error for an instance that reaches there.
+    void check_extent(std::size_t i, const Pose& pose) const {
+        constexpr float farthest = 1e18f;
+        const auto object = std::size_t(scene.instances[i].object);
+        const glm::mat4& m = pose.world_from_instance[i];
+        const float size = pose.bent[i] ? largest_coordinate(pose.bent[i]->P) : sizes[object];
+        for (int r = 0; r < 3; ++r) {
+            const float reach = (std::abs(m[0][r]) + std::abs(m[1][r]) + std::abs(m[2][r])) * size +
+                                std::abs(m[3][r]);
+            if (reach <= farthest) continue;
+            throw Error(name_of(object) +
+                        ": its node puts it farther away than rays can be traced");
+        }
+    }
+
+    static float largest_coordinate(const std::vector<glm::vec3>& P) noexcept {
+        float largest = 0.0f;
+        for (const glm::vec3& p : P) {
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
+        return largest;
     }
 
     void set_pose(const Pose& pose) {

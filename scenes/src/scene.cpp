@@ -115,7 +115,9 @@ int find_camera(const Scene& scene, const std::string& name) {
         const std::string node = node_name(camera);
         if (node == name) by_node.push_back(int(i));
         if (camera.name == name) by_data.push_back(int(i));
-        names.push_back(node == camera.name ? node : fmt::format("{} ({})", node, camera.name));
+        names.push_back(node == camera.name || node.empty()
+                            ? camera.name
+                            : fmt::format("{} ({})", node, camera.name));
     }
     const std::vector<int>& found = by_node.empty() ? by_data : by_node;
     if (found.size() == 1) return found.front();

@@ -68,7 +68,7 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
 /// Half the smallest footprint of a pixel on each object, at least 1/16384 of the object's
 /// diagonal; 1/512 of the diagonal for an object that is never seen. Object space, by object.
 ///
-/// Looks at the whole animation (at most 64 of its frames, evenly spread), not at the frames to be
+/// Looks at the whole animation (at most 256 of its frames, evenly spread), not at the frames to be
 /// rendered: each frame of an animation may be a job of its own, and a texture must not change
 /// from one to the next.
 std::vector<float> direct_filter_widths(const Scene& scene, RayScene& rays, int camera, double fps,

@@ -22,6 +22,10 @@ inline constexpr const char* version = "0.1.0";
 /// Texts of foreign exceptions are clamped to one line of 300 characters.
 int run_program(const char* program, const std::function<void()>& body);
 
+/// A message as a program prints it on stderr: one line of at most 300 characters, with its name
+/// before it and without control characters, whatever file it speaks of.
+std::string message_line(const std::string& program, const std::string& message);
+
 /// "A-B", "A-BxSTEP" or "A". Error names the option and the form.
 FrameRange parse_frames(const std::string& text);
 /// "1280x720", both in [1, 65536].
