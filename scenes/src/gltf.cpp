@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "gltf.h"
+#include "gltf_unshown.h"
 
 namespace estara {
 namespace {
@@ -240,21 +241,23 @@ private:
             object.weights = property(mesh.weights, mesh.weights.size(), "weights", where);
             read_primitive(m_model, primitive, where, object);
             dequantize(object, how);
-            dress(object, primitive.material, where);
+            dress(object, primitive, where);
             place->second.push_back(int(m_scene.objects.size()));
             m_scene.objects.push_back(std::move(object));
         }
         return place->second;
     }
 
-    void dress(Object& object, int material_index, const std::string& mesh_where) {
-        if (material_index == -1) return;
-        const tinygltf::Material& material =
-            gltf_element(m_model.materials, material_index, mesh_where, "material");
-        if (material.pbrMetallicRoughness.baseColorTexture.index != -1) ++m_textured;
-        read_material(m_model, material_index,
-                      at("material", material.name, std::size_t(material_index)), object,
-                      m_scene.warnings);
+    void dress(Object& object, const tinygltf::Primitive& primitive,
+               const std::string& mesh_where) {
+        const tinygltf::Material* material = nullptr;
+        if (primitive.material != -1) {
+            const int index = primitive.material;
+            material = &gltf_element(m_model.materials, index, mesh_where, "material");
+            read_material(m_model, index, at("material", material->name, std::size_t(index)),
+                          object, m_scene.warnings);
+        }
+        m_unshown.note(object, primitive, material);
     }
 
     void read_camera(int index, int ours) {
@@ -327,8 +330,8 @@ private:
         };
         tell(m_points_and_lines, "primitives of points or lines");
         tell(m_many_joints, "primitives' joints beyond eight a vertex");
-        tell(m_textured, "colour textures; the colour factor is");
         tell(m_orthographic, "orthographic cameras");
+        for (const std::string& line : m_unshown.lines()) warn(line);
     }
 
     void add_what_is_missing() {
@@ -354,7 +357,8 @@ private:
     std::vector<bool> m_hidden;  ///< by our node, of those in the file
     std::map<std::pair<int, Dequantization>, std::vector<int>> m_objects;  ///< by mesh
     std::map<int, int> m_skins;  ///< index into m_scene.skins by index in the file
-    int m_points_and_lines = 0, m_many_joints = 0, m_textured = 0, m_orthographic = 0;
+    int m_points_and_lines = 0, m_many_joints = 0, m_orthographic = 0;
+    UnshownFeatures m_unshown;
 };
 
 }  // namespace

@@ -354,8 +354,9 @@ TEST_F(Gltf, NeverLooksAtImages) {
     file.json["textures"] = {{{"source", 0}}};
     file.primitive(file.square())["material"] =
         file.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
-    EXPECT_THAT(load().warnings,
-                Contains("a.gltf: not shown: 1 colour textures; the colour factor is"));
+    EXPECT_THAT(
+        load().warnings,
+        Contains("a.gltf: not shown: colour textures (the colour factor is) of \"square\""));
 }
 
 TEST_F(Gltf, SaysWhatOfTheFileIsNoGltf) {
