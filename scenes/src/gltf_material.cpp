@@ -32,16 +32,6 @@ std::vector<float> numbers(const json& value, const std::string& where, const st
                             one_line(key), one_line(value.dump(-1, ' ', true))));
 }
 
-/// The shader a material's name means: "wood", or "wood.001" as Blender numbers its copies.
-std::string shader_named(const std::string& material) {
-    if (find_shader(material)) return material;
-    const std::size_t dot = material.rfind('.');
-    if (dot == std::string::npos || dot + 1 == material.size()) return "";
-    if (material.find_first_not_of("0123456789", dot + 1) != std::string::npos) return "";
-    const std::string stem = material.substr(0, dot);
-    return find_shader(stem) ? stem : "";
-}
-
 std::string shader_of(const json& extras, const tinygltf::Material& material,
                       const std::string& where) {
     if (!extras.contains("shader")) return shader_named(material.name);
@@ -49,24 +39,6 @@ std::string shader_of(const json& extras, const tinygltf::Material& material,
     if (name.is_string() && !name.get<std::string>().empty()) return name;
     throw Error(fmt::format("{}: \"shader\" must be a name in quotes, not {}", where,
                             one_line(name.dump(-1, ' ', true))));
-}
-
-/// The shader that a material's name would mean if small and capital letters were alike, or "".
-std::string shader_almost_named(const std::string& material) {
-    const auto small = [](std::string text) {
-        for (char& c : text) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-        return text;
-    };
-    std::string stem = small(material);
-    const std::size_t dot = stem.rfind('.');
-    if (dot != std::string::npos && dot + 1 < stem.size() &&
-        stem.find_first_not_of("0123456789", dot + 1) == std::string::npos) {
-        stem.resize(dot);
-    }
-    for (const ShaderInfo& info : all_shaders()) {
-        if (small(std::string(info.name)) == stem) return std::string(info.name);
-    }
-    return "";
 }
 
 /// Parameters beside "shader" instead of in "params", as Blender's custom properties are flat.

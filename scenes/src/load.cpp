@@ -27,17 +27,19 @@ std::string ending(const std::string& path) {
     return text;
 }
 
-Scene scene_of(Mesh mesh, const std::string& path) {
+/// Objects where their coordinates put them, seen from an orbit.
+Scene scene_of(std::vector<Object> objects, const std::string& path,
+               std::vector<std::string> warnings) {
     Scene scene;
     scene.path = path;
-    Object object;
-    object.name = object.mesh_name = std::filesystem::path(path).stem().string();
-    object.mesh = std::move(mesh);
-    scene.objects.push_back(std::move(object));
-    Node node;
-    node.name = scene.objects.front().name;
-    scene.nodes.push_back(std::move(node));
-    scene.instances.push_back({0, 0});
+    scene.warnings = std::move(warnings);
+    for (Object& object : objects) {
+        scene.instances.push_back({int(scene.objects.size()), int(scene.nodes.size())});
+        Node node;
+        node.name = object.name;
+        scene.nodes.push_back(std::move(node));
+        scene.objects.push_back(std::move(object));
+    }
     add_orbit_camera(scene);
     add_studio_lights(scene);
     scene.ambient = glm::vec3(studio_ambient);
@@ -120,8 +122,19 @@ Scene read(const std::string& path) {
     refuse_folder(path);
     const std::string format = ending(path);
     if (format == "gltf" || format == "glb") return read_gltf(path);
-    if (format == "obj") return scene_of(read_obj(path), path);
-    if (format == "ply") return scene_of(read_ply(path), path);
+    std::vector<std::string> warnings;
+    if (format == "obj") {
+        std::vector<Object> objects = read_obj(path, warnings);
+        return scene_of(std::move(objects), path, std::move(warnings));
+    }
+    if (format == "ply") {
+        Object object;
+        object.name = object.mesh_name = std::filesystem::path(path).stem().string();
+        object.mesh = read_ply(path, warnings);
+        std::vector<Object> objects;
+        objects.push_back(std::move(object));
+        return scene_of(std::move(objects), path, std::move(warnings));
+    }
     throw Error(
         fmt::format("{}: unknown kind of file; a scene ends in .gltf, .glb, .obj or .ply", path));
 }

@@ -12,8 +12,15 @@ namespace estara {
 /// The readers. Objects come with names and choices; load_scene() binds the shaders and adds a
 /// camera and lights where there are none. Messages of their Errors begin with the path.
 Scene read_gltf(const std::string& path);
-Mesh read_obj(const std::string& path);
-Mesh read_ply(const std::string& path);
+std::vector<Object> read_obj(const std::string& path, std::vector<std::string>& warnings);
+Mesh read_ply(const std::string& path, std::vector<std::string>& warnings);
+
+/// The shader a material's name means: "wood", or "wood.001" as Blender numbers its copies; or "".
+std::string shader_named(const std::string& material);
+/// The shader that it would mean if small and capital letters were alike, or "".
+std::string shader_almost_named(const std::string& material);
+/// The warning of a material that is almost named so.
+std::string almost_named(const std::string& where, const std::string& shader);
 
 /// Contents of a file. Error if it cannot be read.
 std::string read_file(const std::string& path);

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "loaders.h"
 #include "ply_file.h"
+#include "triangulate.h"
 
 namespace estara {
 namespace {
@@ -32,14 +34,19 @@ int slot(const PlyProperty& property) {
 
 class MeshReader {
 public:
-    MeshReader(const std::string& path, std::string_view file)
-        : m_path(path), m_header(read_ply_header(path, file)), m_body(path, file, m_header) {}
+    MeshReader(const std::string& path, std::string_view file, std::vector<std::string>& warnings)
+        : m_path(path),
+          m_warnings(warnings),
+          m_header(read_ply_header(path, file)),
+          m_body(path, file, m_header) {}
 
     Mesh run() {
         for (const PlyElement& element : m_header.elements) {
             if (element.name == "vertex") m_vertices = element.count;
         }
         for (const PlyElement& element : m_header.elements) read_element(element);
+        cut_polygons();
+        tell_of_colours();
         if (m_mesh.triangles.empty()) {
             throw Error(fmt::format("{}: no triangles; it has {} vertices", m_path, m_vertices));
         }
@@ -119,15 +126,25 @@ private:
         return std::uint32_t(index);
     }
 
+    /// Polygons are cut once the positions are known: an element "face" may come first.
     void read_polygon(const PlyProperty& p) {
         const std::uint64_t corners = m_body.next_length(*p.list_size, p.type);
-        std::uint32_t first = 0, previous = 0;
         for (std::uint64_t k = 0; k < corners; ++k) {
-            const std::uint32_t v = *read_index(p.type, false);
-            if (k == 0) first = v;
-            if (k >= 2) m_mesh.triangles.emplace_back(first, previous, v);
-            previous = v;
+            m_corners.push_back(*read_index(p.type, false));
         }
+        m_polygon_ends.push_back(m_corners.size());
+    }
+
+    void cut_polygons() {
+        std::size_t first = 0, degenerate = 0;
+        for (const std::size_t end : m_polygon_ends) {
+            const std::span<const std::uint32_t> corners(m_corners.data() + first, end - first);
+            degenerate += triangulate(corners, m_mesh.P, m_mesh.triangles) ? 0 : 1;
+            first = end;
+        }
+        if (degenerate == 0 || m_mesh.triangles.empty()) return;
+        m_warnings.push_back(fmt::format(
+            "{}: not shown: {} faces with fewer than three different corners", m_path, degenerate));
     }
 
     void read_strip(const PlyProperty& p) {
@@ -152,7 +169,20 @@ private:
         }
     }
 
+    void tell_of_colours() {
+        for (const PlyElement& element : m_header.elements) {
+            for (const PlyProperty& p : element.properties) {
+                if (p.name != "red" && p.name != "diffuse_red") continue;
+                m_warnings.push_back(fmt::format("{}: not shown: colours of the element '{}'",
+                                                 m_path, one_line(element.name, longest_name)));
+            }
+        }
+    }
+
     std::string m_path;
+    std::vector<std::string>& m_warnings;
+    std::vector<std::uint32_t> m_corners;     ///< of all polygons
+    std::vector<std::size_t> m_polygon_ends;  ///< in m_corners
     PlyHeader m_header;
     PlyBody m_body;
     std::uint64_t m_vertices = 0;
@@ -161,9 +191,9 @@ private:
 
 }  // namespace
 
-Mesh read_ply(const std::string& path) {
+Mesh read_ply(const std::string& path, std::vector<std::string>& warnings) {
     const std::string file = read_file(path);
-    return MeshReader(path, file).run();
+    return MeshReader(path, file, warnings).run();
 }
 
 }  // namespace estara

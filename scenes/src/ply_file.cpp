@@ -51,6 +51,12 @@ public:
     HeaderReader(const std::string& path, std::string_view file) : m_path(path), m_file(file) {}
 
     PlyHeader run() {
+        constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+        if (m_file.starts_with(byte_order_mark)) m_at = byte_order_mark.size();
+        // An old Macintosh's lines end in CR alone.
+        const std::size_t first = m_file.find_first_of("\r\n");
+        const bool cr = first != m_file.npos && m_file[first] == '\r';
+        if (cr && m_file.substr(first, 2) != "\r\n") m_line_end = '\r';
         if (next_line() != "ply") {
             throw Error(fmt::format("{}: not a PLY file; it does not begin with 'ply'", m_path));
         }
@@ -64,7 +70,7 @@ private:
     std::string next_line() {
         // A binary file without line ends must not become one long message.
         constexpr std::size_t longest = 4096;
-        const std::size_t end = m_file.substr(m_at, longest).find('\n');
+        const std::size_t end = m_file.substr(m_at, longest).find(m_line_end);
         ++m_line;
         if (end == std::string_view::npos) fail("the header has no end ('end_header')");
         std::string line(m_file.substr(m_at, end));
@@ -147,6 +153,7 @@ private:
     std::string m_path;
     std::string_view m_file;
     std::size_t m_at = 0;
+    char m_line_end = '\n';
     int m_line = 0;
     bool m_has_format = false;
     PlyHeader m_header;

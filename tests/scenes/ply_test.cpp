@@ -199,5 +199,29 @@ TEST_F(Ply, CutAnywhereFailsCleanly) {
     }
 }
 
+TEST_F(Ply, CutsConcavePolygonsInside) {
+    const std::string header =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const std::string chevron = "0 0 0\n4 -1 0\n1 0 0\n4 1 0\n";
+    EXPECT_NEAR(area(read(header + chevron + "4 0 1 2 3\n")), 1.0, 1e-6);
+    EXPECT_NEAR(area(read(header + chevron + "4 3 2 1 0\n")), 1.0, 1e-6);
+}
+
+TEST_F(Ply, ReadsFacesBeforeVerticesMarksAndOldLineEnds) {
+    const std::string text =
+        "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_index\n"
+        "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+        "property uchar red\nend_header\n5 0 1 1 2 3\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n";
+    EXPECT_NEAR(area(read(text)), 1.0, 1e-6);
+    EXPECT_NEAR(area(read("\xef\xbb\xbf" + text)), 1.0, 1e-6);
+    std::string old = text;
+    std::replace(old.begin(), old.end(), '\n', '\r');
+    EXPECT_NEAR(area(read(old)), 1.0, 1e-6);
+    write_file("a.ply", text);
+    EXPECT_EQ(load_scene("a.ply").warnings,
+              std::vector<std::string>{"a.ply: not shown: colours of the element 'vertex'"});
+}
+
 }  // namespace
 }  // namespace estara
