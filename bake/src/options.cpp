@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <utility>
 
 #include "estara/scenes/command_line.h"
 
@@ -11,6 +13,7 @@ namespace estara::bake {
 namespace {
 
 constexpr const char* examples = R"(Examples:
+  estara-bake still-life.glb -o grids
   estara-bake wood still-life.glb -o wood.vdb
   estara-bake greenmarble bunny.obj -o bunny.vdb --param veinfreq=20 --max-error 0.005)";
 
@@ -32,14 +35,24 @@ Compression parse_compression(const std::string& word) {
 
 void check(const Options& options) {
     if (options.list_shaders || !options.describe.empty()) return;
-    if (options.shader.empty() || options.scene.empty()) {
+    if (options.scene.empty()) {
         throw Error(
-            "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb; --help explains");
+            "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb, or a scene alone: "
+            "estara-bake SCENE -o FOLDER; --help explains");
     }
     if (options.output.empty() && !options.dry_run) {
-        throw Error("where to? give -o FILE.vdb (or --dry-run to see what a bake would cost)");
+        throw Error(
+            options.shader.empty()
+                ? "where to? give -o FOLDER (or --dry-run to see what a bake would cost)"
+                : "where to? give -o FILE.vdb (or --dry-run to see what a bake would cost)");
     }
-    if (!options.output.empty() && !options.output.ends_with(".vdb")) {
+    if (options.shader.empty() && options.output.ends_with(".vdb")) {
+        throw Error(fmt::format(
+            "-o {}: a scene is baked into a folder, a file for each shader; one shader alone: "
+            "estara-bake SHADER {} -o {}",
+            options.output, options.scene, options.output));
+    }
+    if (!options.shader.empty() && !options.output.empty() && !options.output.ends_with(".vdb")) {
         throw Error(fmt::format("{}: grids are written as .vdb; give the name that ending",
                                 options.output));
     }
@@ -67,16 +80,47 @@ void check(const Options& options) {
     }
     refuse_same_file(
         {{"SCENE", options.scene}, {"-o", options.output}, {"--stats", options.stats}});
-    if (!(options.fps > 0.0) || !std::isfinite(options.fps)) {
-        throw Error(fmt::format("--fps {}: must be above 0", options.fps));
+    if (options.fps && !(*options.fps > 0.0 && std::isfinite(*options.fps))) {
+        throw Error(fmt::format("--fps {}: must be above 0", *options.fps));
     }
     if (options.threads < 0 || options.threads > 4096) {
         throw Error(fmt::format("--threads {}: must be from 0 to 4096", options.threads));
     }
 }
 
+/// One word alone is the scene, and all that it needs is baked.
+void take_scene(Options& options) {
+    if (options.shader.empty() || !options.scene.empty()) return;
+    if (find_shader(options.shader) != nullptr && !std::filesystem::exists(options.shader)) return;
+    options.scene = std::exchange(options.shader, "");
+}
+
+/// --param wood.ringscale=4 is for all objects of a scene that wear wood; of the shader that is
+/// baked it is --param ringscale=4.
+void take_params(const Words& words, Options& options) {
+    for (const std::string& text : words.params) {
+        Setting setting = parse_setting(text);
+        const std::size_t dot = setting.name.find('.');
+        if (options.shader.empty()) {
+            if (dot == std::string::npos) {
+                throw Error(fmt::format("--param {}: of which shader? Write --param SHADER.{}",
+                                        setting.name, text));
+            }
+        } else if (dot != std::string::npos) {
+            const std::string shader = setting.name.substr(0, dot);
+            if (shader != options.shader) {
+                throw Error(fmt::format("--param {}: {} is baked, not {}", setting.name,
+                                        options.shader, shader));
+            }
+            setting.name.erase(0, dot + 1);
+        }
+        options.params.push_back(std::move(setting));
+    }
+}
+
 void interpret(const CLI::App& app, const Words& words, Options& options) {
-    for (const std::string& text : words.params) options.params.push_back(parse_setting(text));
+    take_scene(options);
+    take_params(words, options);
     if (app.count("--voxel-size") > 0) options.voxel_size = words.voxel_size;
     if (app.count("--max-error") > 0) options.max_error = words.max_error;
     if (!words.frames.empty()) options.frames = parse_frames(words.frames);
@@ -86,7 +130,7 @@ void interpret(const CLI::App& app, const Words& words, Options& options) {
         options.max_memory = naming("--max-memory", [&] { return parse_size(words.max_memory); });
     }
     options.file.compression = parse_compression(words.compression);
-    options.progress = parse_progress(words.progress);
+    options.progress = options.quiet ? ProgressStyle::none : parse_progress(words.progress);
     if (words.seed < 0) throw Error(fmt::format("--seed {}: must be 0 or above", words.seed));
     options.seed = std::uint64_t(words.seed);
     if (app.count("--irradiance-voxel-size") > 0) {
@@ -96,8 +140,12 @@ void interpret(const CLI::App& app, const Words& words, Options& options) {
 }
 
 void add_what(CLI::App& app, Options& options, Words& words) {
-    app.add_option("SHADER", options.shader, "one of --list-shaders");
+    app.add_option("SHADER", options.shader,
+                   "one of --list-shaders; left out: all that the scene's objects wear");
     app.add_option("SCENE", options.scene, "glTF, OBJ or PLY file");
+    app.add_flag("--allow-outside", options.allow_outside,
+                 "read files that the scene names outside of its folder")
+        ->group("Objects");
     app.add_flag("--list-shaders", options.list_shaders, "all shaders with their parameters")
         ->group("Shaders");
     app.add_flag("--markdown", options.markdown, "--list-shaders as a table for a README")
@@ -106,7 +154,7 @@ void add_what(CLI::App& app, Options& options, Words& words) {
         ->type_name("SHADER")
         ->group("Shaders");
     app.add_option("--param", words.params, "parameter, over what the scene says; may be repeated")
-        ->type_name("NAME=VALUE")
+        ->type_name("[SHADER.]NAME=VALUE")
         ->allow_extra_args(false)
         ->group("Shaders");
     app.add_option(
@@ -130,11 +178,11 @@ void add_resolution(CLI::App& app, Options& options, Words& words) {
         ->group("Resolution");
     app.add_option("--frames", words.frames,
                    "frames of the camera path (default: the scene's animation)")
-        ->type_name("A-B[xSTEP]")
+        ->type_name("A-B[xSTEP],...")
         ->group("Resolution");
-    app.add_option("--fps", options.fps, "frames a second of the animation")
+    app.add_option("--fps", options.fps,
+                   "frames a second of the animation (default: the scene's, else 24)")
         ->type_name("N")
-        ->capture_default_str()
         ->group("Resolution");
     app.add_option("--resolution", words.resolution, "image size that will be rendered")
         ->type_name("WxH")
@@ -162,8 +210,9 @@ void add_light(CLI::App& app, Options& options, Words& words) {
 }
 
 void add_file(CLI::App& app, Options& options, Words& words) {
-    app.add_option("-o,--output", options.output, "file to write")
-        ->type_name("FILE.vdb")
+    app.add_option("-o,--output", options.output,
+                   "file to write; without SHADER a folder, with a file for each shader")
+        ->type_name("FILE.vdb|FOLDER")
         ->group("File");
     app.add_option("--compression", words.compression, "zip, blosc or none")
         ->type_name("NAME")
@@ -187,6 +236,7 @@ void add_work(CLI::App& app, Options& options, Words& words) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Work");
+    app.add_flag("--quiet", options.quiet, "print errors alone")->group("Work");
     app.add_option("--progress", words.progress,
                    "auto: a bar on a terminal, lines elsewhere; plain: lines; none")
         ->type_name("STYLE")

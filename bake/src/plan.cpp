@@ -52,13 +52,6 @@ BoundShaderPtr bind_solid(const ShaderChoice& choice, bool has_uv) {
                     choice.where, choice.name, action));
 }
 
-std::vector<double> sizes_from_camera(const Scene& scene, const Options& options) {
-    RayScene rays(scene);
-    return automatic_voxel_sizes(scene, rays, find_camera(scene, options.camera),
-                                 options.frames.value_or(animated_frames(scene, options.fps)),
-                                 options.fps, options.resolution.x, options.resolution.y);
-}
-
 /// Error for an object so small that squares of its lengths, or of a voxel's, are no floats.
 void check_object(const Job& job) {
     constexpr double least = 1e-12;
@@ -130,10 +123,17 @@ void fit_memory(std::vector<Job>& jobs, const Options& options,
 
 }  // namespace
 
+std::vector<double> sizes_from_camera(const Scene& scene, const Options& options) {
+    RayScene rays(scene);
+    return automatic_voxel_sizes(scene, rays, find_camera(scene, options.camera),
+                                 options.frames.value_or(animated_frames(scene, *options.fps)),
+                                 *options.fps, options.resolution.x, options.resolution.y);
+}
+
 std::vector<Job> plan(const Scene& scene, const Options& options,
-                      const std::function<void(const std::string&)>& message) {
+                      const std::function<void(const std::string&)>& message,
+                      std::vector<double> sizes) {
     if (!options.camera.empty()) find_camera(scene, options.camera);
-    std::vector<double> sizes;
     const std::vector<int> selected = select_objects(scene, options.shader, options.objects);
     std::vector<Job> jobs;
     for (const int index : selected) {
@@ -143,7 +143,7 @@ std::vector<Job> plan(const Scene& scene, const Options& options,
         naming(jobs.back(), [&] { check_object(jobs.back()); });
     }
     if (options.max_error) return jobs;
-    if (!options.voxel_size) sizes = sizes_from_camera(scene, options);
+    if (!options.voxel_size && sizes.empty()) sizes = sizes_from_camera(scene, options);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         Job& job = jobs[i];
         job.voxel_size = options.voxel_size ? *options.voxel_size : sizes[std::size_t(selected[i])];

@@ -22,8 +22,13 @@ struct Job {
 /// The jobs of a run. A voxel size that the user gave and that does not fit into --max-memory is an
 /// Error with one that does; one that the camera path asked for is raised until it fits, with a
 /// warning.
+/// @param sizes  by object, what automatic_voxel_sizes() says; empty: not known yet
 std::vector<Job> plan(const Scene& scene, const Options& options,
-                      const std::function<void(const std::string&)>& message);
+                      const std::function<void(const std::string&)>& message,
+                      std::vector<double> sizes = {});
+
+/// The voxel sizes that the camera path asks for, by object.
+std::vector<double> sizes_from_camera(const Scene& scene, const Options& options);
 
 /// Runs work and puts the job's object before what is wrong with it.
 template <class Work>

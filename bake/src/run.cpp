@@ -1,19 +1,25 @@
 #include "estara/bake/run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
+#include <set>
 
 #include "describe.h"
 #include "estara/bake/bake.h"
 #include "estara/bake/irradiance.h"
 #include "estara/scenes/load.h"
 #include "estara/scenes/static_light.h"
+#include "estara/shaders/batch.h"
 #include "plan.h"
 
 namespace estara::bake {
@@ -161,17 +167,20 @@ nlohmann::json as_json(const Done& done) {
             {"errors", errors},          {"seconds", done.seconds}, {"attempts", done.attempts}};
 }
 
-void write_stats(const Options& options, const std::vector<Done>& bakes, std::uint64_t bytes,
-                 double seconds) {
+nlohmann::json stats_of(const Options& options, const std::vector<Done>& bakes, std::uint64_t bytes,
+                        double seconds) {
     nlohmann::json objects = nlohmann::json::array();
     for (const Done& done : bakes) objects.push_back(as_json(done));
-    const nlohmann::json stats{
-        {"version", version},           {"shader", options.shader}, {"scene", options.scene},
-        {"file", options.output},       {"bytes", bytes},           {"seconds", seconds},
-        {"peak_memory", peak_memory()}, {"objects", objects}};
+    return {{"version", version},           {"shader", options.shader}, {"scene", options.scene},
+            {"file", options.output},       {"bytes", bytes},           {"seconds", seconds},
+            {"peak_memory", peak_memory()}, {"objects", objects}};
+}
+
+void write_stats(const std::string& file, const nlohmann::json& stats) {
+    if (file.empty()) return;
     // A file's name need not be UTF-8.
     constexpr auto replace = nlohmann::json::error_handler_t::replace;
-    write_text(options.stats, stats.dump(2, ' ', false, replace) + "\n");
+    write_text(file, stats.dump(2, ' ', false, replace) + "\n");
 }
 
 /// A number of voxels as exactly as it is known.
@@ -214,8 +223,11 @@ void check_writable(const Options& options) {
     const PendingFile probe(options.output);
 }
 
-void bake_all_jobs(const std::vector<Job>& jobs, const Scene& scene, const Options& options,
-                   const Output& output) {
+/// @param request  for the file's metadata, or ""
+/// @return         what --stats says of it
+nlohmann::json bake_all_jobs(const std::vector<Job>& jobs, const Scene& scene,
+                             const Options& options, const Output& output,
+                             const std::string& request) {
     const Stopwatch watch;
     std::vector<Done> bakes;
     std::uint64_t held = program_bytes;  // and by the grids that are done
@@ -239,17 +251,179 @@ void bake_all_jobs(const std::vector<Job>& jobs, const Scene& scene, const Optio
         grids.push_back(std::move(done.grid));
         if (done.light) grids.push_back(std::move(*done.light));
     }
+    for (TextureGrid& grid : grids) grid.request = request;
     const std::uint64_t bytes = write_file(options, grids);
     std::size_t written = 0;
     for (Done& done : bakes) {
         done.grid = std::move(grids[written++]);
         if (done.light) done.light = std::move(grids[written++]);
     }
-    if (!options.stats.empty()) write_stats(options, bakes, bytes, watch.seconds());
     output.result(
         fmt::format("{}: {} in {}, {}", options.output, format_bytes(bytes),
                     bakes.size() == 1 ? "1 object" : fmt::format("{} objects", bakes.size()),
                     format_seconds(watch.seconds())));
+    return stats_of(options, bakes, bytes, watch.seconds());
+}
+
+/// 16 hex digits that change whenever a bake of these jobs would give another file.
+std::string request_of(const std::vector<Job>& jobs, const Scene& scene, const Options& options) {
+    std::string text = fmt::format("{} {} {} {} {} {}", version, options.seed, options.file.half,
+                                   int(options.file.compression),
+                                   options.irradiance ? options.irradiance_error : 0.0,
+                                   options.irradiance_voxel_size.value_or(0.0));
+    for (const Job& job : jobs) {
+        text += fmt::format(";{} {} {} {:a} {:a}", job.object->name, mesh_digest(job.object->mesh),
+                            shader_digest(*job.shader), job.voxel_size.value_or(0.0),
+                            options.max_error.value_or(0.0));
+        for (const glm::vec3& value : job.shader->values()) {
+            text += fmt::format(" {:a} {:a} {:a}", value.x, value.y, value.z);
+        }
+        const std::vector<int> places = instances_of(scene, int(job.object - scene.objects.data()));
+        if (options.irradiance && places.size() == 1) {
+            text += lights_digest(scene, places.front());
+        }
+    }
+    return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+/// Whether a file is there, whole, and what would be baked again.
+bool is_fresh(const std::string& file, const std::string& request, const Output& output) {
+    std::error_code code;
+    if (!std::filesystem::exists(file, code)) return false;
+    try {
+        const std::vector<TextureGrid> grids = read_vdb(file);
+        return std::all_of(grids.begin(), grids.end(),
+                           [&](const TextureGrid& grid) { return grid.request == request; });
+    } catch (const Error& error) {
+        output.message(fmt::format("warning: {}; baked again", error.what()));
+        return false;
+    }
+}
+
+/// Whether a shader paints everything alike: tried at points all over an object.
+bool is_one_colour(const Object& object) {
+    const Box box = bounds(object.mesh);
+    SurfaceBatch batch;
+    batch.filter_width = 1e-4f * std::max(box.diagonal(), 1e-30f);
+    for (batch.size = 0; batch.size < 256;) {
+        // The golden ratio's generalisation to three dimensions spreads evenly.
+        const float i = float(batch.size);
+        const glm::vec3 at(glm::fract(glm::vec3(0.8191725f, 0.6710436f, 0.5497005f) * i));
+        batch.set(batch.size++, glm::mix(box.min, box.max, at),
+                  glm::normalize(at - glm::vec3(0.49f)), glm::vec2(at), {1.0f, 0.0f, 0.0f});
+    }
+    const int floats = object.shader->info().baked_floats;
+    std::vector<float> planes(std::size_t(floats) * batch_capacity);
+    object.shader->bake(batch, planes.data());
+    for (int k = 0; k < floats; ++k) {
+        const float* const plane = planes.data() + k * batch_capacity;
+        if (std::any_of(plane, plane + batch.size, [&](float v) { return v != plane[0]; })) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// The objects that wear a shader, as globs, of those that --object names; apart the shaders of
+/// which there is nothing to bake.
+std::map<std::string, std::vector<std::string>> objects_by_shader(const Scene& scene,
+                                                                  const Options& options,
+                                                                  std::set<std::string>& layered,
+                                                                  std::set<std::string>& plain) {
+    std::vector<int> chosen(scene.objects.size());
+    std::iota(chosen.begin(), chosen.end(), 0);
+    if (!options.objects.empty()) chosen = select_objects(scene, "", options.objects);
+    std::map<std::string, std::vector<std::string>> found;
+    for (const int o : chosen) {
+        const Object& object = scene.objects[std::size_t(o)];
+        if (!object.wears_shader()) continue;
+        if (object.shader->layered()) {
+            layered.insert(object.choice.name);
+        } else if (is_one_colour(object)) {
+            plain.insert(object.choice.name);
+        } else {
+            found[object.choice.name].push_back(object.name);
+        }
+    }
+    return found;
+}
+
+/// What else lies in the folder, by a bake of another scene or another program.
+void tell_of_others(const std::filesystem::path& folder, const std::set<std::string>& ours,
+                    const Output& output) {
+    std::set<std::string> others;
+    std::error_code code;
+    for (std::filesystem::directory_iterator it(folder, code), end; !code && it != end;
+         it.increment(code)) {
+        const std::string name = it->path().filename().string();
+        if (name.ends_with(".vdb") && !name.starts_with('.') && !ours.contains(name)) {
+            others.insert(name);
+        }
+    }
+    if (others.empty()) return;
+    output.message(fmt::format("warning: {}: left as they are, the scene needs none of: {}",
+                               folder.string(), fmt::join(others, ", ")));
+}
+
+/// Bakes all that a scene needs into a folder, a file for each shader. What is fresh is not baked
+/// again: a bake that was interrupted goes on where it was.
+void bake_scene(const Scene& scene, const Options& options, const Output& output) {
+    std::set<std::string> layered, plain, files;
+    const auto by_shader = objects_by_shader(scene, options, layered, plain);
+    if (!plain.empty()) {
+        output.message(
+            fmt::format("one colour all over, nothing to bake: {}", fmt::join(plain, ", ")));
+    }
+    if (!layered.empty()) {
+        output.message(
+            fmt::format("layered, left to estara-render's cache: {}", fmt::join(layered, ", ")));
+    }
+    if (by_shader.empty()) {
+        throw Error(fmt::format("{}: no object wears a shader that can be baked", scene.path));
+    }
+    std::error_code code;
+    if (std::filesystem::exists(options.output, code) &&
+        !std::filesystem::is_directory(options.output, code)) {
+        throw Error(
+            fmt::format("-o {}: is a file; a scene is baked into a folder", options.output));
+    }
+    std::vector<double> sizes;
+    if (!options.voxel_size && !options.max_error) sizes = sizes_from_camera(scene, options);
+    std::vector<std::pair<Options, std::vector<Job>>> bakes;
+    for (const auto& [shader, objects] : by_shader) {
+        Options one = options;
+        one.shader = shader;
+        one.objects = objects;
+        one.params.clear();  // the scene has them
+        one.output = (std::filesystem::path(options.output) / (shader + ".vdb")).string();
+        files.insert(shader + ".vdb");
+        std::vector<Job> jobs = plan(scene, one, output.message, sizes);
+        bakes.emplace_back(std::move(one), std::move(jobs));
+    }
+    nlohmann::json stats = nlohmann::json::array(), fresh = stats;
+    for (const auto& [one, jobs] : bakes) {
+        if (options.dry_run) {
+            for (const Job& job : jobs) {
+                output.result(naming(job, [&, &of = one] { return dry_run(job, of); }));
+            }
+            continue;
+        }
+        const std::string request = request_of(jobs, scene, one);
+        if (is_fresh(one.output, request, output)) {
+            output.result(fmt::format("{}: fresh, not baked again", one.output));
+            fresh.push_back(one.output);
+            continue;
+        }
+        check_writable(one);
+        stats.push_back(bake_all_jobs(jobs, scene, one, output, request));
+    }
+    if (options.dry_run) return;
+    tell_of_others(options.output, files, output);
+    write_stats(options.stats, {{"version", version},
+                                {"scene", options.scene},
+                                {"folder", options.output},
+                                {"files", stats},
+                                {"fresh", fresh}});
 }
 
 void check_light(const Scene& scene) {
@@ -263,7 +437,8 @@ void check_light(const Scene& scene) {
 
 }  // namespace
 
-void run(const Options& options, const Output& output) {
+void run(const Options& given, const Output& output) {
+    Options options = given;
     if (options.list_shaders) {
         if (options.markdown) return output.result(shader_table());
         for (const ShaderInfo& shader : all_shaders()) output.result(describe(shader));
@@ -278,13 +453,17 @@ void run(const Options& options, const Output& output) {
         limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                       std::size_t(options.threads));
     }
-    check_shader(options.shader);
-    const Scene scene = load_scene(options.scene);
+    if (!options.shader.empty()) check_shader(options.shader);
+    Scene scene = load_scene(options.scene, options.allow_outside);
+    options.fps = frame_rate(scene, given.fps);
+    if (options.shader.empty()) set_parameters(scene, options.params);
     for (const std::string& warning : scene.warnings) output.message("warning: " + warning);
     if (options.irradiance) check_light(scene);
+    if (options.shader.empty()) return bake_scene(scene, options, output);
     if (!options.dry_run) check_writable(options);
     const std::vector<Job> jobs = plan(scene, options, output.message);
-    if (!options.dry_run) return bake_all_jobs(jobs, scene, options, output);
+    if (!options.dry_run)
+        return write_stats(options.stats, bake_all_jobs(jobs, scene, options, output, ""));
     for (const Job& job : jobs) output.result(naming(job, [&] { return dry_run(job, options); }));
 }
 

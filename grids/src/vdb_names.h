@@ -30,6 +30,7 @@ inline constexpr const char* shader = "estara_shader";
 inline constexpr const char* shader_digest = "estara_shader_digest";
 inline constexpr const char* mesh_digest = "estara_mesh_digest";
 inline constexpr const char* lights_digest = "estara_lights_digest";
+inline constexpr const char* request = "estara_request";
 inline constexpr const char* object = "estara_object";
 inline constexpr const char* closed = "estara_closed";
 inline constexpr const char* voxel_size = "estara_voxel_size";

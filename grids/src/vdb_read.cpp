@@ -131,6 +131,9 @@ private:
         if (head.getMetadata<openvdb::StringMetadata>(key::lights_digest)) {
             to.lights_digest = meta<std::string>(head, key::lights_digest);
         }
+        if (head.getMetadata<openvdb::StringMetadata>(key::request)) {
+            to.request = meta<std::string>(head, key::request);
+        }
         read_params(head, to);
         const openvdb::Vec3d origin = head.transform().indexToWorld(openvdb::Vec3d(0.0));
         to.origin = {origin.x(), origin.y(), origin.z()};

@@ -72,6 +72,7 @@ void describe(const TextureGrid& from, int level, bool half, GridBase& to) {
     put(to, key::mesh_digest, from.mesh_digest);
     put(to, key::object, from.object);
     if (!from.lights_digest.empty()) put(to, key::lights_digest, from.lights_digest);
+    if (!from.request.empty()) put(to, key::request, from.request);
     put(to, key::closed, from.closed);
     put(to, key::voxel_size, from.voxel_size);
     put(to, key::level, std::int32_t(level));

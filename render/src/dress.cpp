@@ -129,7 +129,7 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
         say(fmt::format("warning: --shader {}: not used, every object of {} wears a shader",
                         options.shader, scene.path));
     }
-    std::vector<LoadedGrid> grids = load_grids(options.grids);
+    std::vector<LoadedGrid> grids = load_grids(options.grids, say);
     const GridMatch match = match_grids(scene, grids);
     for (const std::string& warning : match.warnings) say("warning: " + warning);
     const bool uses_grids =
@@ -138,7 +138,7 @@ Wardrobe dress(Scene& scene, RayScene& rays, const Options& options, int camera,
 
     std::vector<float> widths(scene.objects.size());
     if (needs_direct_width(scene, match)) {
-        widths = direct_filter_widths(scene, rays, camera, options.fps, options.frame.width,
+        widths = direct_filter_widths(scene, rays, camera, *options.fps, options.frame.width,
                                       options.frame.height);
     }
     std::vector<std::shared_ptr<const BrickPyramid>> pyramids(grids.size());

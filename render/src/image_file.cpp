@@ -108,6 +108,14 @@ OIIO::ImageSpec png_spec(const Film& film) {
     return spec;
 }
 
+/// Where a file keeps what it was rendered with.
+constexpr const char* settings_key = "estara:settings";
+
+OIIO::ImageSpec with_settings(OIIO::ImageSpec spec, const Film& film) {
+    if (!film.settings.empty()) spec.attribute(settings_key, film.settings);
+    return spec;
+}
+
 /// OpenImageIO's own words, one line, at most 200 characters.
 std::string first_line(std::string text) {
     text.resize(std::min({text.find('\n'), text.size(), std::size_t(200)}));
@@ -140,19 +148,52 @@ void write_image(const std::string& path, ImageFormat format, const Film& film) 
     PendingFile file(path);
     if (format == ImageFormat::exr) {
         const ExrPixels pixels = exr_pixels(film);
-        write_pixels(file, path, pixels.spec, OIIO::TypeFloat, pixels.values.data());
+        write_pixels(file, path, with_settings(pixels.spec, film), OIIO::TypeFloat,
+                     pixels.values.data());
     } else {
         const std::vector<std::uint8_t> bytes = png_pixels(film);
-        write_pixels(file, path, png_spec(film), OIIO::TypeUInt8, bytes.data());
+        write_pixels(file, path, with_settings(png_spec(film), film), OIIO::TypeUInt8,
+                     bytes.data());
     }
     file.commit();
 }
 
-glm::ivec2 image_size(const std::string& path) {
+std::optional<std::string> image_settings(const std::string& path) {
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
-    if (input) return {input->spec().width, input->spec().height};
-    (void)OIIO::geterror();  // that it cannot be read is the answer
-    return {0, 0};
+    if (!input) {
+        (void)OIIO::geterror();  // that it cannot be read is the answer
+        return std::nullopt;
+    }
+    const std::string text = input->spec().get_string_attribute(settings_key);
+    if (text.empty()) return std::nullopt;
+    return text;
+}
+
+Film read_image(const std::string& path) {
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    if (!input) {
+        throw Error(fmt::format("{}: cannot be read: {}", path, first_line(OIIO::geterror())),
+                    ExitStatus::failed);
+    }
+    const OIIO::ImageSpec& spec = input->spec();
+    const auto channels = std::size_t(spec.nchannels);
+    std::vector<float> values(std::size_t(spec.width) * std::size_t(spec.height) * channels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, values.data())) {
+        throw Error(fmt::format("{}: cannot be read: {}", path, first_line(input->geterror())),
+                    ExitStatus::failed);
+    }
+    const bool is_srgb = spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
+    Film film(spec.width, spec.height, {});
+    for (std::size_t i = 0; i < film.color.size() && channels >= 4; ++i) {
+        const float* const from = values.data() + i * channels;
+        for (int c = 0; c < 3; ++c) {
+            // OpenImageIO has associated alpha by itself, after the curve; so it is undone first.
+            const float straight = is_srgb && from[3] > 0.0f ? from[c] / from[3] : from[c];
+            film.color[i][c] = is_srgb ? OIIO::sRGB_to_linear(straight) * from[3] : from[c];
+        }
+        film.color[i].a = from[3];
+    }
+    return film;
 }
 
 }  // namespace estara

@@ -45,8 +45,8 @@ void check_ranges(const Options& options) {
     if (options.frame.spp < 1 || options.frame.spp > 65536) {
         throw Error(fmt::format("--spp {}: must be from 1 to 65536", options.frame.spp));
     }
-    if (!(options.fps > 0.0) || !std::isfinite(options.fps)) {
-        throw Error(fmt::format("--fps {}: must be above 0", options.fps));
+    if (options.fps && !(*options.fps > 0.0 && std::isfinite(*options.fps))) {
+        throw Error(fmt::format("--fps {}: must be above 0", *options.fps));
     }
     if (!(std::abs(options.frame.exposure) <= 100.0f)) {
         throw Error(fmt::format("--exposure {}: must be from -100 to 100", options.frame.exposure));
@@ -60,19 +60,26 @@ void check_ranges(const Options& options) {
     }
     if (!options.params.empty() && options.shader.empty()) {
         throw Error(
-            "--param needs --shader: objects with a shader have its parameters in the scene");
+            "--param NAME=VALUE needs --shader; of the shaders in the scene it is --param "
+            "SHADER.NAME=VALUE");
     }
 }
 
 void check_names(const Options& options) {
+    if (!options.sheet.empty() && !options.sheet.ends_with(".png")) {
+        throw Error(fmt::format("--sheet {}: is written as .png; give the name that ending",
+                                options.sheet));
+    }
     std::set<std::string> names;
     for (const FilePattern& output : options.outputs) {
         if (!names.insert(output.text()).second) {
             throw Error(fmt::format("-o {}: given twice", output.text()));
         }
     }
-    std::vector<std::pair<std::string, std::string>> files{
-        {"SCENE", options.scene}, {"--stats", options.stats}, {"--report", options.report}};
+    std::vector<std::pair<std::string, std::string>> files{{"SCENE", options.scene},
+                                                           {"--stats", options.stats},
+                                                           {"--report", options.report},
+                                                           {"--sheet", options.sheet}};
     for (const std::string& grid : options.grids) files.emplace_back("--grids", grid);
     const int frame = options.frames ? options.frames->first : 1;
     for (const FilePattern& output : options.outputs) files.emplace_back("-o", output.path(frame));
@@ -85,9 +92,28 @@ void check_names(const Options& options) {
     }
 }
 
+/// A shell's g/*.vdb are many words, and the scene may come behind them.
+void take_scene_from_grids(Options& options) {
+    const auto is_scene = [](const std::string& word) {
+        return word.ends_with(".glb") || word.ends_with(".gltf") || word.ends_with(".obj") ||
+               word.ends_with(".ply");
+    };
+    const auto found = std::find_if(options.grids.begin(), options.grids.end(), is_scene);
+    if (options.scene.empty() && found != options.grids.end()) {
+        options.scene = *found;
+        options.grids.erase(found);
+    }
+    if (options.scene.empty()) throw Error("SCENE is required; --help lists the options");
+}
+
 void interpret(const Words& words, Options& options) {
+    take_scene_from_grids(options);
     for (const std::string& text : words.outputs) options.outputs.emplace_back(text);
-    for (const std::string& text : words.params) options.params.push_back(parse_setting(text));
+    for (const std::string& text : words.params) {
+        Setting setting = parse_setting(text);
+        const bool of_shader = setting.name.find('.') != std::string::npos;
+        (of_shader ? options.scene_params : options.params).push_back(std::move(setting));
+    }
     for (const std::string& name : words.aovs) add_aov(options.frame.aovs, name);
     options.strategy = parse_strategy(words.strategy);
     if (!words.frames.empty()) options.frames = parse_frames(words.frames);
@@ -112,34 +138,38 @@ void interpret(const Words& words, Options& options) {
             naming("--cache-memory", [&] { return parse_size(words.cache_memory); });
     }
     options.cache_light = parse_cache_light(words.cache_light);
-    options.progress = parse_progress(words.progress);
+    options.progress = options.quiet ? ProgressStyle::none : parse_progress(words.progress);
     check_ranges(options);
     check_names(options);
 }
 
 void add_input(CLI::App& app, Options& options, Words& words) {
-    app.add_option("SCENE", options.scene, "glTF, OBJ or PLY file")->required();
-    app.add_option("--grids", options.grids, "what estara-bake wrote; may be repeated")
-        ->type_name("FILE.vdb")
-        ->allow_extra_args(false)
+    app.add_option("SCENE", options.scene, "glTF, OBJ or PLY file");
+    app.add_option("--grids", options.grids,
+                   "what estara-bake wrote: files, or a folder of them; may be repeated")
+        ->type_name("FILE.vdb|FOLDER...")
         ->group("Input");
     app.add_option("--camera", options.camera, "camera by name (default: the scene's first)")
         ->type_name("NAME")
         ->group("Input");
     app.add_option("--frames", words.frames, "frames to render (default: the scene's animation)")
-        ->type_name("A-B[xSTEP]")
+        ->type_name("A-B[xSTEP],...")
         ->group("Input");
-    app.add_option("--fps", options.fps, "frames a second of the animation")
+    app.add_option("--fps", options.fps,
+                   "frames a second of the animation (default: the scene's, else 24)")
         ->type_name("N")
-        ->capture_default_str()
         ->group("Input");
     app.add_option("--shader", options.shader,
                    "what objects wear that wear no shader in the scene (default: what their grid "
                    "was baked with, else plastic)")
         ->type_name("NAME")
         ->group("Input");
-    app.add_option("--param", words.params, "parameter of --shader; may be repeated")
-        ->type_name("NAME=VALUE")
+    app.add_flag("--allow-outside", options.allow_outside,
+                 "read files that the scene names outside of its folder")
+        ->group("Input");
+    app.add_option("--param", words.params,
+                   "parameter of --shader, or of all objects that wear SHADER; may be repeated")
+        ->type_name("[SHADER.]NAME=VALUE")
         ->allow_extra_args(false)
         ->group("Input");
 }
@@ -159,7 +189,10 @@ void add_output(CLI::App& app, Options& options, Words& words) {
         ->allow_extra_args(false)
         ->group("Output");
     app.add_flag("--resume", options.resume,
-                 "skip frames whose images are all there, in this resolution")
+                 "skip frames whose images are all there and were rendered with these settings")
+        ->group("Output");
+    app.add_option("--sheet", options.sheet, "write all frames small on one page")
+        ->type_name("FILE.png")
         ->group("Output");
     app.add_option("--report", options.report, "write a page of times and errors")
         ->type_name("FILE.html")
@@ -233,6 +266,7 @@ void add_work(CLI::App& app, Options& options, Words& words) {
         ->type_name("N")
         ->capture_default_str()
         ->group("Work");
+    app.add_flag("--quiet", options.quiet, "print errors alone")->group("Work");
     app.add_option("--progress", words.progress,
                    "auto: a bar on a terminal, lines elsewhere; plain: lines; none")
         ->type_name("STYLE")
@@ -273,7 +307,7 @@ Options parse_options(int argc, const char* const* argv, std::string& help) {
 }
 
 FrameRange frames_of(const Options& options, const Scene& scene) {
-    return options.frames ? *options.frames : animated_frames(scene, options.fps);
+    return options.frames ? *options.frames : animated_frames(scene, *options.fps);
 }
 
 int window_of(const Options& options, int frame) noexcept {

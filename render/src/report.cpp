@@ -63,7 +63,7 @@ std::string settings_table(const RunRecord& run) {
            row({"samples a pixel", fmt::format("{}", o.frame.spp)}) +
            row({"exposure", fmt::format("{} EV", o.frame.exposure)}) +
            row({"frames", fmt::format("{}-{}x{}, {} a second", run.range.first, run.range.last,
-                                      run.range.step, o.fps)}) +
+                                      run.range.step, *o.fps)}) +
            row({"threads", o.threads > 0 ? fmt::format("{}", o.threads) : "one a core"}) +
            "</table>\n";
 }

@@ -7,32 +7,57 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <thread>
 
 #include "estara/render/image_queue.h"
 #include "estara/render/report.h"
+#include "estara/render/settings.h"
+#include "estara/render/sheet.h"
 #include "estara/scenes/load.h"
 #include "estara/scenes/program.h"
 
 namespace estara {
 namespace {
 
-/// Whether every image of a frame is there, readable and of the size that is asked for.
-bool is_finished(const Options& options, int frame) {
-    return std::all_of(options.outputs.begin(), options.outputs.end(), [&](const FilePattern& o) {
-        return image_size(o.path(frame)) == glm::ivec2(options.frame.width, options.frame.height);
-    });
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+/// Why the images of a frame cannot stay, or "" if all are there with the settings that are asked
+/// for.
+std::string why_not_finished(const Options& options, const std::string& settings, int frame) {
+    for (const FilePattern& output : options.outputs) {
+        std::error_code code;
+        const std::string file = output.path(frame);
+        if (!std::filesystem::exists(file, code)) return "missing";
+        const std::optional<std::string> was = image_settings(file);
+        if (!was) return "another program's, or damaged";
+        const std::string difference = first_difference(*was, settings);
+        if (!difference.empty()) return difference;
+    }
+    return "";
 }
 
 /// With --resume, those that are not finished; of a strategy that may use the cache whole windows,
 /// because a frame's hit points are those of the frames before it.
-std::vector<int> frames_to_render(const Options& options, const FrameRange& range) {
+std::vector<int> frames_to_render(const Options& options, const FrameRange& range,
+                                  const std::string& settings, const Say& say) {
     const bool may_cache =
         options.strategy == Strategy::cache || options.strategy == Strategy::automatic;
     std::vector<int> missing;
+    std::map<std::string, int> again;  // frames by the reason why they are rendered again
     for (int i = 0; i < range.count(); ++i) {
-        if (!options.resume || !is_finished(options, range.at(i))) missing.push_back(range.at(i));
+        const std::string why =
+            options.resume ? why_not_finished(options, settings, range.at(i)) : "missing";
+        if (why.empty()) continue;
+        missing.push_back(range.at(i));
+        if (why != "missing") ++again[why];
+    }
+    for (const auto& [why, count] : again) {
+        say(fmt::format("--resume: {} rendered again: {}", counted(count, "frame is", "frames are"),
+                        why));
     }
     if (!options.resume || !may_cache) return missing;
     std::vector<int> frames;
@@ -51,10 +76,7 @@ void check_folders(const Options& options, int frame) {
     for (const FilePattern& output : options.outputs) const PendingFile probe(output.path(frame));
     if (!options.stats.empty()) const PendingFile probe(options.stats);
     if (!options.report.empty()) const PendingFile probe(options.report);
-}
-
-std::string counted(std::uint64_t n, const char* one, const char* many) {
-    return fmt::format("{} {}", n, n == 1 ? one : many);
+    if (!options.sheet.empty()) const PendingFile probe(options.sheet);
 }
 
 void warn_of_frames(const RunRecord& record, const Say& say) {
@@ -74,8 +96,9 @@ void warn_of_frames(const RunRecord& record, const Say& say) {
 class Animation {
 public:
     Animation(const Options& options, const Scene& scene, RayScene& rays, const Wardrobe& wardrobe,
-              int camera)
+              int camera, std::string settings)
         : m_options(options),
+          m_settings(std::move(settings)),
           m_wardrobe(wardrobe),
           m_camera(camera),
           m_renderer(scene, rays, options.frame),
@@ -93,6 +116,7 @@ public:
             Film film =
                 queue.film(m_options.frame.width, m_options.frame.height, m_options.frame.aovs);
             records.push_back(render_frame(frame, film, [&] { progress.advance(1); }));
+            film.settings = m_settings;
             queue.push(std::move(film), frame, m_options.outputs);
         }
         queue.finish();
@@ -101,7 +125,7 @@ public:
 
 private:
     FrameRecord render_frame(int frame, Film& film, const std::function<void()>& tile_done) {
-        const double time = frame / m_options.fps;
+        const double time = frame / *m_options.fps;
         FrameRecord record{frame, {}, {}, {}, {}};
         for (const FilePattern& output : m_options.outputs) {
             record.files.push_back(output.path(frame));
@@ -120,6 +144,7 @@ private:
     }
 
     const Options& m_options;
+    std::string m_settings;
     const Wardrobe& m_wardrobe;
     int m_camera;
     FrameRenderer m_renderer;
@@ -131,15 +156,18 @@ private:
 
 RunRecord run(const Options& options, const Say& say) {
     const Stopwatch whole;
-    Scene scene = load_scene(options.scene);
+    Scene scene = load_scene(options.scene, options.allow_outside);
     const double loading = whole.seconds();
     RunRecord record = run(options, std::move(scene), say);
     record.seconds += loading;
     return record;
 }
 
-RunRecord run(const Options& options, Scene scene, const Say& say) {
+RunRecord run(const Options& given, Scene scene, const Say& say) {
     const Stopwatch whole;
+    Options options = given;
+    options.fps = frame_rate(scene, given.fps);
+    set_parameters(scene, options.scene_params);
     const std::size_t threads = options.threads > 0
                                     ? std::size_t(options.threads)
                                     : std::max<std::size_t>(1, std::thread::hardware_concurrency());
@@ -152,7 +180,8 @@ RunRecord run(const Options& options, Scene scene, const Say& say) {
     record.range = frames_of(options, scene);
     check_outputs(options, record.range);
     const int camera = find_camera(scene, options.camera);
-    const std::vector<int> frames = frames_to_render(options, record.range);
+    const std::string settings = settings_text(options, scene, camera);
+    const std::vector<int> frames = frames_to_render(options, record.range, settings, say);
     record.skipped = record.range.count() - int(frames.size());
     check_folders(options, record.range.first);
 
@@ -160,11 +189,18 @@ RunRecord run(const Options& options, Scene scene, const Say& say) {
         RayScene rays(scene);
         const Wardrobe wardrobe = dress(scene, rays, options, camera, record.range, say);
         record.objects = wardrobe.records;
-        record.frames = Animation(options, scene, rays, wardrobe, camera).render(frames);
+        record.frames = Animation(options, scene, rays, wardrobe, camera, settings).render(frames);
     }
     record.seconds = whole.seconds();
     warn_of_frames(record, say);
     if (!options.stats.empty()) write_text(options.stats, json_text(record));
+    if (!options.sheet.empty()) {
+        ContactSheet sheet(record.range.count(), options.frame.width, options.frame.height);
+        for (int i = 0; i < record.range.count(); ++i) {
+            sheet.add(record.range.at(i), options.outputs.front().path(record.range.at(i)));
+        }
+        sheet.write(options.sheet);
+    }
     if (!options.report.empty()) write_text(options.report, html_text(record, options.report));
     return record;
 }

@@ -134,7 +134,7 @@ Json settings_json(const RunRecord& run) {
               {"cache_test_all", o.frame.test_all_points},
               {"frames",
                {{"first", run.range.first}, {"last", run.range.last}, {"step", run.range.step}}},
-              {"fps", o.fps},
+              {"fps", *o.fps},
               {"width", o.frame.width},
               {"height", o.frame.height},
               {"spp", o.frame.spp},

@@ -50,7 +50,7 @@ public:
 private:
     FrameStatistics render(const std::vector<ObjectShading>& shading, int frame, Film& film,
                            ReuseCache* cache) {
-        return m_renderer->render(shading, m_camera, frame / m_options.fps, film, {}, cache);
+        return m_renderer->render(shading, m_camera, frame / *m_options.fps, film, {}, cache);
     }
 
     const Scene& m_scene;

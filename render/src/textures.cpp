@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 
 #include "estara/grids/irradiance.h"
 #include "estara/scenes/error.h"
@@ -220,10 +222,32 @@ private:
 
 }  // namespace
 
-std::vector<LoadedGrid> load_grids(const std::vector<std::string>& files) {
+std::vector<LoadedGrid> load_grids(const std::vector<std::string>& names, const Say& say) {
+    namespace fs = std::filesystem;
     std::vector<LoadedGrid> loaded;
-    for (const std::string& file : files) {
+    const auto load = [&](const std::string& file) {
         for (TextureGrid& grid : read_vdb(file)) loaded.push_back({file, std::move(grid)});
+    };
+    for (const std::string& name : names) {
+        std::error_code code;
+        if (!fs::is_directory(name, code)) {
+            load(name);
+            continue;
+        }
+        std::set<std::string> files;
+        for (const fs::directory_entry& entry : fs::directory_iterator(name, code)) {
+            const bool hidden = entry.path().filename().string().starts_with('.');
+            if (!hidden && entry.path().extension() == ".vdb") files.insert(entry.path().string());
+        }
+        if (code) throw Error(fmt::format("{}: cannot be read: {}", name, code.message()));
+        if (files.empty()) throw Error(fmt::format("{}: no .vdb file in this folder", name));
+        for (const std::string& file : files) {
+            try {
+                load(file);
+            } catch (const Error& error) {  // it may be another program's
+                say(fmt::format("warning: {}; not used", error.what()));
+            }
+        }
     }
     return loaded;
 }

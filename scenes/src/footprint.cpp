@@ -101,7 +101,11 @@ std::vector<double> automatic_voxel_sizes(const Scene& scene, RayScene& rays, in
     constexpr int most_frames = 256;
     FrameRange looked_at = frames;
     if (frames.count() > most_frames) {
-        looked_at.step *= (frames.count() + most_frames - 1) / most_frames;
+        const int stride = (frames.count() + most_frames - 1) / most_frames;
+        looked_at = {frames.first, frames.last, frames.step * stride};
+        for (int i = 0; i < frames.count() && !frames.list.empty(); i += stride) {
+            looked_at.list.push_back(frames.at(i));
+        }
     }
     const std::vector<float> footprints =
         smallest_footprints(scene, rays, camera, looked_at, fps, width, height);

@@ -14,9 +14,9 @@ namespace {
 
 class GltfReader {
 public:
-    explicit GltfReader(const std::string& path) {
+    GltfReader(const std::string& path, bool allow_outside) {
         m_scene.path = path;
-        m_model = parse_gltf(path, m_scene.warnings);
+        m_model = parse_gltf(path, allow_outside, m_scene.warnings);
     }
 
     Scene run() {
@@ -338,7 +338,10 @@ private:
         const std::string where = m_scene.path + ": scene";
         const std::size_t shown = std::size_t(std::max(m_model.defaultScene, 0));
         std::optional<glm::vec3> ambient;
-        if (shown < m_model.scenes.size()) ambient = read_ambient(m_model.scenes[shown], where);
+        if (shown < m_model.scenes.size()) {
+            ambient = read_ambient(m_model.scenes[shown], where);
+            m_scene.fps = read_fps(m_model.scenes[shown], where);
+        }
         m_scene.ambient = ambient.value_or(glm::vec3(0.0f));
         if (m_scene.cameras.empty()) {
             warn("no camera; one that goes round the scene in frames 1-48 is added");
@@ -363,6 +366,8 @@ private:
 
 }  // namespace
 
-Scene read_gltf(const std::string& path) { return GltfReader(path).run(); }
+Scene read_gltf(const std::string& path, bool allow_outside) {
+    return GltfReader(path, allow_outside).run();
+}
 
 }  // namespace estara

@@ -17,7 +17,8 @@ namespace estara {
 
 /// Parses the file and what it refers to, but images. Error if it is not glTF 2.0, is truncated,
 /// or requires an extension that this does not read.
-tinygltf::Model parse_gltf(const std::string& path, std::vector<std::string>& warnings);
+tinygltf::Model parse_gltf(const std::string& path, bool allow_outside,
+                           std::vector<std::string>& warnings);
 
 /// 'mesh "vase"', or 'mesh 3' for one without a name.
 std::string gltf_name(const char* kind, const std::string& name, std::size_t index);
@@ -96,8 +97,9 @@ void read_material(const tinygltf::Model& model, int index, const std::string& w
 void warn_of_shader(const std::string& extras, const std::string& where,
                     std::vector<std::string>& warnings);
 
-/// The scene's extras "ambient", if it has one.
+/// The scene's extras "ambient" and "fps", if it has them.
 std::optional<glm::vec3> read_ambient(const tinygltf::Scene& scene, const std::string& where);
+std::optional<double> read_fps(const tinygltf::Scene& scene, const std::string& where);
 
 /// Puts the key frames into the nodes.
 /// @param ours  index into scene.nodes by index in the file; -1 for nodes that are not shown

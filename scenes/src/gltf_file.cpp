@@ -198,6 +198,57 @@ std::string complaints(const std::string& problems) {
     return one_line(kept);
 }
 
+/// What tinygltf may read beside the scene, and why it was not let. Its own functions read from any
+/// folder, from the current one too, and expand names as a shell does.
+struct FilesBeside {
+    std::filesystem::path folder;
+    bool allow_outside;
+    std::string problem;  ///< of the last file that was refused
+
+    static FilesBeside& of(void* user) { return *static_cast<FilesBeside*>(user); }
+
+    bool is_readable(const std::string& name) {
+        std::error_code code;
+        const std::filesystem::path file = std::filesystem::weakly_canonical(name, code);
+        if (code || !std::filesystem::exists(file, code)) return false;
+        const std::filesystem::path inside = file.lexically_relative(folder);
+        const bool is_inside = !inside.empty() && *inside.begin() != "..";
+        if (!is_inside && !allow_outside) {
+            problem = fmt::format(
+                "{}: lies outside the scene's folder and is not read; --allow-outside allows it",
+                one_line(name, longest_name));
+            return false;
+        }
+        if (std::filesystem::is_regular_file(file, code)) return true;
+        problem = fmt::format("{}: is not a file", one_line(name, longest_name));
+        return false;
+    }
+};
+
+tinygltf::FsCallbacks callbacks_of(FilesBeside& files) {
+    tinygltf::FsCallbacks callbacks{};
+    callbacks.FileExists = [](const std::string& name, void* user) {
+        return FilesBeside::of(user).is_readable(name);
+    };
+    callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* error,
+                                 const std::string& name, void* user) {
+        if (!FilesBeside::of(user).is_readable(name)) return false;
+        try {
+            const std::string read = read_file(name);
+            bytes->assign(read.begin(), read.end());
+            return true;
+        } catch (const Error& why) {
+            if (error) *error = why.what();
+            return false;
+        }
+    };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&,
+                                  const std::vector<unsigned char>&, void*) { return false; };
+    callbacks.user_data = &files;
+    return callbacks;
+}
+
 bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
                   const unsigned char*, int, void*) {
     return true;
@@ -215,7 +266,8 @@ void fail_no_element(const std::string& where, const char* what, int i, std::siz
                             i, count));
 }
 
-tinygltf::Model parse_gltf(const std::string& path, std::vector<std::string>& warnings) {
+tinygltf::Model parse_gltf(const std::string& path, bool allow_outside,
+                           std::vector<std::string>& warnings) {
     const std::string file = read_file(path);
     if (file.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw Error(fmt::format("{}: glTF files end at 4 GiB", path));
@@ -226,10 +278,14 @@ tinygltf::Model parse_gltf(const std::string& path, std::vector<std::string>& wa
 
     tinygltf::TinyGLTF parser;
     parser.SetImageLoader(ignore_image, nullptr);
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    std::error_code code;
+    FilesBeside files{
+        std::filesystem::weakly_canonical(folder.empty() ? "." : folder, code), allow_outside, {}};
+    parser.SetFsCallbacks(callbacks_of(files));
     parser.SetStoreOriginalJSONForExtrasAndExtensions(true);
     tinygltf::Model model;
     std::string problems, remarks;
-    const std::string folder = std::filesystem::path(path).parent_path().string();
     const std::uint32_t size = std::uint32_t(file.size());
     bool ok = false;
     try {
@@ -243,6 +299,7 @@ tinygltf::Model parse_gltf(const std::string& path, std::vector<std::string>& wa
     } catch (const std::exception& exception) {
         problems = exception.what();
     }
+    if (!ok && !files.problem.empty()) throw Error(fmt::format("{}: {}", path, files.problem));
     if (!ok) throw Error(fmt::format("{}: cannot be read as glTF: {}", path, one_line(problems)));
     if (const std::string left_out = complaints(problems); !left_out.empty()) {
         warnings.push_back(fmt::format("{}: in part not glTF, and left out: {}", path, left_out));

@@ -119,4 +119,13 @@ std::optional<glm::vec3> read_ambient(const tinygltf::Scene& scene, const std::s
     throw Error(fmt::format("{}: \"ambient\" must not be negative", where));
 }
 
+std::optional<double> read_fps(const tinygltf::Scene& scene, const std::string& where) {
+    const json extras = extras_of(scene.extras_json_string);
+    if (!extras.contains("fps")) return std::nullopt;
+    const json& fps = extras["fps"];
+    if (is_finite_number(fps) && fps.get<double>() > 0.0) return fps.get<double>();
+    throw Error(fmt::format("{}: \"fps\" must be a number above 0, not {}", where,
+                            one_line(fps.dump(-1, ' ', true), longest_name)));
+}
+
 }  // namespace estara

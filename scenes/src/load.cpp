@@ -118,10 +118,10 @@ void refuse_folder(const std::string& path) {
     }
 }
 
-Scene read(const std::string& path) {
+Scene read(const std::string& path, bool allow_outside) {
     refuse_folder(path);
     const std::string format = ending(path);
-    if (format == "gltf" || format == "glb") return read_gltf(path);
+    if (format == "gltf" || format == "glb") return read_gltf(path, allow_outside);
     std::vector<std::string> warnings;
     if (format == "obj") {
         std::vector<Object> objects = read_obj(path, warnings);
@@ -176,8 +176,8 @@ std::string one_line(const std::string& text, std::size_t longest) {
     return line.substr(0, end) + std::string(more);
 }
 
-Scene load_scene(const std::string& path) {
-    Scene scene = read(path);
+Scene load_scene(const std::string& path, bool allow_outside) {
+    Scene scene = read(path, allow_outside);
     check_extent(scene);
     make_names_unique(scene.objects);
     bind_shaders(scene);

@@ -11,7 +11,7 @@ namespace estara {
 
 /// The readers. Objects come with names and choices; load_scene() binds the shaders and adds a
 /// camera and lights where there are none. Messages of their Errors begin with the path.
-Scene read_gltf(const std::string& path);
+Scene read_gltf(const std::string& path, bool allow_outside);
 std::vector<Object> read_obj(const std::string& path, std::vector<std::string>& warnings);
 Mesh read_ply(const std::string& path, std::vector<std::string>& warnings);
 

@@ -1,4 +1,6 @@
 // Animation: key frames to matrices, and the view and lights they carry.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -148,6 +150,45 @@ void take_in(const Track<T>& track, double& first, double& last) {
 int whole_frame(double frame) { return int(std::clamp(frame, -1e9, 1e9)); }
 
 }  // namespace
+
+std::optional<double> rate_of_keys(const Scene& scene) {
+    std::vector<float> times;
+    const auto add = [&](const auto& track) {
+        times.insert(times.end(), track.times.begin(), track.times.end());
+    };
+    for (const Node& node : scene.nodes) {
+        add(node.translations);
+        add(node.rotations);
+        add(node.scales);
+        for (const Track<float>& track : node.weight_tracks) add(track);
+    }
+    // In thousandths of a frame beside the rounding of a float.
+    const auto fits = [&](double rate) {
+        return std::all_of(times.begin(), times.end(), [&](float time) {
+            const double frame = double(time) * rate;
+            return std::abs(frame - std::round(frame)) < 2e-3 + 1e-6 * std::abs(frame);
+        });
+    };
+    if (fits(24.0)) return std::nullopt;
+    for (const double rate : {25.0, 30.0, 12.0, 48.0, 50.0, 60.0, 24000.0 / 1001.0,
+                              30000.0 / 1001.0, 60000.0 / 1001.0, 100.0, 120.0}) {
+        if (fits(rate)) return rate;
+    }
+    return std::nullopt;
+}
+
+double frame_rate(Scene& scene, const std::optional<double>& given) {
+    if (given) return *given;
+    if (scene.fps) return *scene.fps;
+    constexpr double usual = 24.0;
+    if (const std::optional<double> rate = rate_of_keys(scene)) {
+        scene.warnings.push_back(fmt::format(
+            "{}: its keys lie on frames at {:.5g} a second, not at {}; --fps {:.5g}, or "
+            "\"fps\" in the scene's extras, shows them so",
+            scene.path, *rate, usual, *rate));
+    }
+    return usual;
+}
 
 Pose pose_at(const Scene& scene, double time, const glm::dvec3& origin) {
     const std::vector<glm::dmat4> world = world_from_nodes(scene, time);

@@ -2,8 +2,10 @@
 #include "estara/scenes/scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 #include "estara/scenes/error.h"
@@ -137,6 +139,35 @@ std::vector<int> instances_of(const Scene& scene, int object) {
 std::vector<int> select_objects(const Scene& scene, const std::string& shader,
                                 const std::vector<std::string>& globs) {
     return globs.empty() ? objects_wearing(scene, shader) : objects_matching(scene, globs);
+}
+
+void set_parameters(Scene& scene, const std::vector<Setting>& settings) {
+    std::set<std::string> worn;
+    for (const Object& object : scene.objects) {
+        if (object.wears_shader()) worn.insert(object.choice.name);
+    }
+    for (const Setting& setting : settings) {
+        const std::size_t dot = setting.name.find('.');
+        const std::string shader = setting.name.substr(0, dot), name = setting.name.substr(dot + 1);
+        if (find_shader(shader) == nullptr) {
+            const BindResult wrong = bind_shader(shader, {}, false);
+            throw Error(fmt::format("--param {}: {}; {}", setting.name, wrong.problems.front().what,
+                                    wrong.problems.front().hint));
+        }
+        if (!worn.contains(shader)) {
+            throw Error(
+                fmt::format("--param {}: no object wears '{}'; worn are: {}", setting.name, shader,
+                            worn.empty() ? "none" : fmt::format("{}", fmt::join(worn, ", "))));
+        }
+        for (Object& object : scene.objects) {
+            if (object.choice.name != shader) continue;
+            std::erase_if(object.choice.settings, [&](const Setting& s) { return s.name == name; });
+            object.choice.settings.push_back({name, setting.value});
+            ShaderChoice choice = object.choice;
+            choice.where = "--param";
+            object.shader = bind_choice(choice, object.mesh.has_uv());
+        }
+    }
 }
 
 BoundShaderPtr bind_choice(const ShaderChoice& choice, bool has_uv) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "estara/scenes/program.h"
@@ -64,12 +65,14 @@ std::optional<int> power_named(std::string_view suffix) {
 
 }  // namespace
 
-FrameRange parse_frames(const std::string& text) {
+namespace {
+
+/// One part of a list of frames: "A", "A-B" or "A-BxSTEP".
+FrameRange parse_range(std::string_view all, const std::string& text) {
     const auto fail = [&](const char* why) {
-        throw Error(fmt::format("--frames '{}': {}", one_line(text), why));
+        throw Error(fmt::format("--frames '{}': {}", one_line(text, longest_name), why));
     };
     constexpr int last_frame = 1000000000;  // so that counting them cannot overflow
-    const std::string_view all = text;
     const std::size_t cross = all.find('x');
     const std::string_view range = all.substr(0, cross);
     const std::size_t dash = range.find('-');
@@ -77,11 +80,36 @@ FrameRange parse_frames(const std::string& text) {
     const auto last = dash == std::string_view::npos ? first : number<int>(range.substr(dash + 1));
     const auto step = cross == std::string_view::npos ? std::optional<int>(1)
                                                       : number<int>(all.substr(cross + 1));
-    if (!first || !last || !step) fail("must be A, A-B or A-BxSTEP, such as 1-48 or 1-48x2");
+    if (!first || !last || !step) {
+        fail("must be A, A-B or A-BxSTEP, or a list of them, such as 1-48 or 1,20,40-60x5");
+    }
     if (*first < 0 || *last > last_frame) fail("frames are counted from 0 to 1000000000");
     if (*last < *first) fail("ends before it starts");
     if (*step < 1) fail("the step must be at least 1");
     return {*first, *last, *step};
+}
+
+}  // namespace
+
+FrameRange parse_frames(const std::string& text) {
+    std::string_view rest = text;
+    std::vector<FrameRange> parts;
+    for (std::size_t comma = 0; comma != std::string_view::npos; rest.remove_prefix(comma + 1)) {
+        comma = rest.find(',');
+        parts.push_back(parse_range(rest.substr(0, comma), text));
+        if (comma == std::string_view::npos) break;
+    }
+    if (parts.size() == 1) return parts.front();
+    std::set<int> frames;
+    for (const FrameRange& part : parts) {
+        constexpr int most = 10000000;
+        if (part.count() > most) {
+            throw Error(fmt::format("--frames '{}': a list of more than {} frames",
+                                    one_line(text, longest_name), most));
+        }
+        for (int i = 0; i < part.count(); ++i) frames.insert(part.at(i));
+    }
+    return {*frames.begin(), *frames.rbegin(), 1, {frames.begin(), frames.end()}};
 }
 
 glm::ivec2 parse_resolution(const std::string& text) {

@@ -90,7 +90,8 @@ TEST(Options, HelpNamesEveryOptionOfTheDesign) {
 
 TEST(Options, AnswerMistakesInOneLine) {
     EXPECT_EQ(failure({}),
-              "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb; --help explains");
+              "give a shader and a scene: estara-bake SHADER SCENE -o FILE.vdb, or a scene alone: "
+              "estara-bake SCENE -o FOLDER; --help explains");
     EXPECT_EQ(failure({"wood", "a.glb"}),
               "where to? give -o FILE.vdb (or --dry-run to see what a bake would cost)");
     EXPECT_EQ(failure({"wood", "a.glb", "-o", "a.txt"}),

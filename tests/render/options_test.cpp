@@ -34,7 +34,7 @@ TEST(Options, DefaultsAreThoseOfTheStruct) {
     EXPECT_EQ(options.frame.width, 640);
     EXPECT_EQ(options.frame.height, 360);
     EXPECT_EQ(options.frame.spp, 4);
-    EXPECT_EQ(options.fps, 24.0);
+    EXPECT_FALSE(options.fps);
     EXPECT_FALSE(options.frames || options.ambient || options.resume || options.compare_direct);
 }
 
@@ -73,7 +73,7 @@ TEST(Options, HelpShowsDefaultsAndEndsInTwoExamples) {
     parse({"--help"}, &help);
     for (const char* part :
          {"640x360", "Examples:", "--compare direct", "--strategy NAME=auto", "--window N=100",
-          "(default: 2.0 GiB)", "--spp N=4", "--fps N=24", "--progress STYLE=auto"}) {
+          "(default: 2.0 GiB)", "--spp N=4", "--fps N", "--progress STYLE=auto"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part << " is not in\n" << help;
     }
     EXPECT_GT(help.find("Examples:"), help.find("--threads"));
@@ -112,7 +112,8 @@ TEST(Options, WrongValuesSayWhatThereIs) {
     EXPECT_EQ(error_with({"-o", "#.tif"}), "-o #.tif: the name must end in .exr or .png");
     EXPECT_EQ(error_with({"-o", "#.exr"}), "-o #.exr: given twice");
     EXPECT_EQ(error_with({"--param", "ringscale=3"}),
-              "--param needs --shader: objects with a shader have its parameters in the scene");
+              "--param NAME=VALUE needs --shader; of the shaders in the scene it is --param "
+              "SHADER.NAME=VALUE");
 }
 
 TEST(Options, UnknownOnesAndMissingOnesPointToHelp) {

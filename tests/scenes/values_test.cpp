@@ -20,8 +20,10 @@ TEST(ParseFrames, ReadsTheThreeForms) {
 
 TEST(ParseFrames, NamesTheOptionAndTheForm) {
     for (const std::string bad : {"", "a", "1-", "-", "1-2x", "1-2x2x2", "1..2", "+1", "1-2-3"}) {
-        EXPECT_EQ(message_of([&] { parse_frames(bad); }),
-                  "--frames '" + bad + "': must be A, A-B or A-BxSTEP, such as 1-48 or 1-48x2");
+        EXPECT_EQ(
+            message_of([&] { parse_frames(bad); }),
+            "--frames '" + bad +
+                "': must be A, A-B or A-BxSTEP, or a list of them, such as 1-48 or 1,20,40-60x5");
     }
     EXPECT_EQ(message_of([] { parse_frames("5-1"); }), "--frames '5-1': ends before it starts");
     EXPECT_EQ(message_of([] { parse_frames("1-5x0"); }),

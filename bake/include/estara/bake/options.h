@@ -13,6 +13,7 @@ namespace estara::bake {
 
 struct Options {
     std::string shader, scene, output;
+    bool allow_outside = false;  ///< files that the scene names may lie outside of its folder
     bool list_shaders = false, markdown = false;
     std::string describe;              ///< a shader's name; "": none
     std::vector<Setting> params;       ///< over what the scene says
@@ -20,7 +21,7 @@ struct Options {
     std::optional<double> voxel_size;  ///< object space; none: from the camera path
     std::optional<double> max_error;   ///< bound on RMSE; none: no bound
     std::optional<FrameRange> frames;  ///< none: the scene's animation
-    double fps = 24.0;
+    std::optional<double> fps;         ///< none: the scene's, or 24
     glm::ivec2 resolution{640, 360};  ///< of the images that the voxel size is chosen for
     std::string camera;               ///< "": the first one
     std::uint64_t max_memory = 0;     ///< bytes; 0: half of the machine's
@@ -31,6 +32,7 @@ struct Options {
     bool dry_run = false;
     std::string stats;  ///< file name; "": none
     int threads = 0;    ///< 0: one a core
+    bool quiet = false;  ///< no warnings, no progress, no results of bakes
     ProgressStyle progress = ProgressStyle::automatic;
     std::uint64_t seed = 0;  ///< of the points where the error is measured
 };

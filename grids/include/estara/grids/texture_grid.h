@@ -108,6 +108,7 @@ struct TextureGrid {
     std::string shader_digest, mesh_digest;
     std::string lights_digest;         ///< of the lights that light was computed from; else empty
     std::vector<ErrorFigures> errors;  ///< by channel; may be empty
+    std::string request;  ///< digest of all that the whole file was asked to be; may be empty
     std::string tool_version;
 
     int floats() const noexcept {

@@ -42,6 +42,7 @@ struct Film {
     std::vector<glm::vec3> albedo, N, P;  ///< mean over the samples that hit something
     std::vector<float> depth;             ///< likewise
     std::vector<float> hit, age, occluded;
+    std::string settings;  ///< what it was rendered with, kept in its files (settings.h)
 
     /// Of memory.
     std::size_t bytes() const noexcept {

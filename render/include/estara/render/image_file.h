@@ -1,6 +1,7 @@
 // Writing pictures.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "estara/render/file_pattern.h"
@@ -15,7 +16,9 @@ namespace estara {
 /// Error: the folder cannot be made or written to (bad_input); the disk is full (failed).
 void write_image(const std::string& path, ImageFormat format, const Film& film);
 
-/// Width and height of an image file; (0, 0) if it cannot be read.
-glm::ivec2 image_size(const std::string& path);
+/// Film::settings of an image file; nothing if it cannot be read or is not ours.
+std::optional<std::string> image_settings(const std::string& path);
+/// A file's picture, linear, alpha associated. Error if it cannot be read.
+Film read_image(const std::string& path);
 
 }  // namespace estara

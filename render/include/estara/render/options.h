@@ -19,6 +19,7 @@ const char* to_string(Strategy strategy) noexcept;
 
 struct Options {
     std::string scene;
+    bool allow_outside = false;  ///< files that it names may lie outside of its folder
     std::vector<FilePattern> outputs;
     std::vector<std::string> grids;
     Strategy strategy = Strategy::automatic;
@@ -29,16 +30,18 @@ struct Options {
     /// Whether the cache keeps diffuse light and shadows; none: if only cameras move.
     std::optional<bool> cache_light;
     std::optional<FrameRange> frames;  ///< none: the scene's animation
-    double fps = 24.0;
+    std::optional<double> fps;         ///< none: the scene's, or 24
     FrameSettings frame;
     std::string camera;                ///< "": the first one
     std::optional<glm::vec3> ambient;  ///< none: the scene's
     std::string shader;           ///< what objects wear that wear nothing in the scene; "": plastic
     std::vector<Setting> params;  ///< of that shader
+    std::vector<Setting> scene_params;  ///< "SHADER.NAME", of all objects that wear it
     bool resume = false;
     bool compare_direct = false;
-    std::string report, stats;  ///< file names; "": none
-    int threads = 0;            ///< 0: one a core
+    std::string report, stats, sheet;  ///< file names; "": none
+    bool quiet = false;                ///< no warnings, no progress, no result
+    int threads = 0;                   ///< 0: one a core
     ProgressStyle progress = ProgressStyle::automatic;
 };
 

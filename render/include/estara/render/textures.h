@@ -18,8 +18,9 @@ struct LoadedGrid {
     TextureGrid grid;
 };
 
-/// The grids of several files, in order. Errors as read_vdb().
-std::vector<LoadedGrid> load_grids(const std::vector<std::string>& files);
+/// The grids of several files, in order; of a folder those of its .vdb files by name, and `say` is
+/// told of those that are not ours. Errors as read_vdb().
+std::vector<LoadedGrid> load_grids(const std::vector<std::string>& names, const Say& say);
 
 struct GridMatch {
     std::vector<int> grid_of_object;        ///< index into the grids; -1: none that fits

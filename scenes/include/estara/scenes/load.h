@@ -20,6 +20,8 @@ namespace estara {
 /// Errors name the file, the mesh or material, what is wrong and what to do: missing or truncated
 /// file, NaN or infinite vertex, index out of range, no triangles, unknown shader or parameter,
 /// required extension that is not supported.
-Scene load_scene(const std::string& path);
+///
+/// @param allow_outside  whether files that a glTF names may lie outside of its folder
+Scene load_scene(const std::string& path, bool allow_outside = false);
 
 }  // namespace estara

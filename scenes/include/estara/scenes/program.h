@@ -26,7 +26,7 @@ int run_program(const char* program, const std::function<void()>& body);
 /// before it and without control characters, whatever file it speaks of.
 std::string message_line(const std::string& program, const std::string& message);
 
-/// "A-B", "A-BxSTEP" or "A". Error names the option and the form.
+/// "A-B", "A-BxSTEP", "A" or a list of them, "1,20,40-60x5". Error names the option and the form.
 FrameRange parse_frames(const std::string& text);
 /// "1280x720", both in [1, 65536].
 glm::ivec2 parse_resolution(const std::string& text);

@@ -91,8 +91,11 @@ struct SceneLight {
 struct FrameRange {
     int first = 1, last = 1;  ///< inclusive
     int step = 1;
-    int count() const noexcept { return (last - first) / step + 1; }
-    int at(int i) const noexcept { return first + i * step; }
+    std::vector<int> list{};  ///< ascending, from first to last; empty: each step from one to the other
+    int count() const noexcept {
+        return list.empty() ? (last - first) / step + 1 : int(list.size());
+    }
+    int at(int i) const noexcept { return list.empty() ? first + i * step : list[std::size_t(i)]; }
 };
 
 struct Scene {
@@ -103,6 +106,7 @@ struct Scene {
     std::vector<Skin> skins;
     std::vector<SceneCamera> cameras;
     std::vector<SceneLight> lights;
+    std::optional<double> fps;  ///< frames a second, if the file says (scene extras "fps")
     glm::vec3 ambient{
         0.0f};  ///< RSL's ambient light, added to every surface (scene extras "ambient")
     std::vector<std::string> warnings;  ///< what the file has and this project does not show
@@ -140,6 +144,21 @@ inline const std::vector<glm::vec3>& placed_vertices(const Scene& scene, const P
 /// The frames of the scene's animation: from the first key to the last at `fps` frames a second;
 /// 1-1 for a scene without animation.
 FrameRange animated_frames(const Scene& scene, double fps);
+
+/// The common rate of frames on which all keys lie if they do not at 24 a second; or nothing.
+std::optional<double> rate_of_keys(const Scene& scene);
+
+/// 16 hex digits that change whenever anything of the scene does that may be seen.
+std::string scene_digest(const Scene& scene);
+
+/// Frames a second: what the user gives, else the scene, else 24, with a warning in
+/// scene.warnings if its keys fit another rate.
+double frame_rate(Scene& scene, const std::optional<double>& given);
+
+/// Sets parameters of all objects that wear their shader. Error for one that none wears, and as
+/// bind_choice().
+/// @param settings  names as "wood.ringscale"
+void set_parameters(Scene& scene, const std::vector<Setting>& settings);
 
 std::vector<PosedLight> posed_lights(const Scene& scene, const Pose& pose);
 
