@@ -180,10 +180,10 @@ RunRecord run(const Options& given, Scene scene, const Say& say) {
     record.range = frames_of(options, scene);
     check_outputs(options, record.range);
     const int camera = find_camera(scene, options.camera);
+    check_folders(options, record.range.first);
     const std::string settings = settings_text(options, scene, camera);
     const std::vector<int> frames = frames_to_render(options, record.range, settings, say);
     record.skipped = record.range.count() - int(frames.size());
-    check_folders(options, record.range.first);
 
     if (!frames.empty()) {
         RayScene rays(scene);

@@ -126,7 +126,8 @@ private:
         int baked_E[capacity];  ///< 1: E was looked up or recalled, shadows and all
         int kept[capacity];     ///< 1: so is which lights are visible
         int age[capacity];      ///< frames since the point was found; -1: a new ray
-        Plane x, y;             ///< of recalled points: place from the pixel's centre, pixels
+        Planes middle;          ///< of recalled points and their seconds: mean placed_P()
+        Plane x, y;             ///< of that: place from the pixel's centre, pixels
         Planes Ci;              ///< added up light by light
     };
     /// One light as it reaches the samples.

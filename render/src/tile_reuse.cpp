@@ -399,6 +399,7 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
         m_samples.age[j] = cache.frame() - m_candidates.id[c].born();
         m_row[j] = -1;
         put(m_samples.surface.P, j, at(m_candidates.P_object, c));
+        put(m_samples.middle, j, at(m_candidates.P_object, c));
         put(m_samples.Ng_object, j, at(m_candidates.Ng_object, c));
         constexpr int N = RecordLayout::N;
         put(m_samples.surface.N, j, {record[N], record[N + 1], record[N + 2]});
@@ -441,7 +442,9 @@ void TileRenderer::shade_recalled(const FrameContext& frame, const Group& group)
 }
 
 /// Where a rectangle has a second point, the sample is what both are on average: a pixel's noise
-/// falls, and so does what changes when one of them goes.
+/// falls, and so does what changes when one of them goes. Only values are averaged. P stays that of
+/// the first, from where light, eye and its own normal are looked at: the mean of two points lies
+/// below a surface that is curved, and a shadow ray from there meets the surface itself.
 void TileRenderer::average_seconds(const FrameContext& frame, const Group& group,
                                    const RecordLayout& layout) {
     const auto mean = [](float& a, float b) { a = 0.5f * (a + b); };
@@ -458,11 +461,7 @@ void TileRenderer::average_seconds(const FrameContext& frame, const Group& group
             alike = alike && ((sides ^ m_sides[std::size_t(j)]) & 1u) == 0;
         }
         if (!alike) continue;
-        // The mean of two points lies below a surface that is curved. Where light is kept only
-        // highlights ask for it; a shadow ray from there would meet the surface itself.
-        if (layout.is_lit()) {
-            for (int c = 0; c < 3; ++c) mean(m_samples.surface.P[c][j], second[P + c]);
-        }
+        for (int c = 0; c < 3; ++c) mean(m_samples.middle[c][j], second[P + c]);
         int plane = 0;
         for (const ChannelInfo& channel : shading_of(frame, group).shader->info().channels) {
             const int first = plane;
@@ -478,17 +477,21 @@ void TileRenderer::average_seconds(const FrameContext& frame, const Group& group
     }
 }
 
-/// Where recalled points lie in their pixels.
+/// Where in their pixels recalled samples have their values from.
 void TileRenderer::place_in_pixels(const FrameContext& frame, const Group& group) {
     wide([samples = &m_samples, group, pose = frame.camera.pose(), width = frame.settings.width,
-          height = frame.settings.height]() ESTARA_LOOP {
+          height = frame.settings.height, m = frame.instances[group.instance].world_from_object]()
+             ESTARA_LOOP {
+                 const glm::vec3 x(m[0]), y(m[1]), z(m[2]), shift(m[3]);
 #pragma GCC ivdep
-        for (int j = group.first; j < group.last; ++j) {
-            const glm::vec3 place = pose.project(at(samples->P, j), width, height);
-            samples->x[j] = place.x - std::floor(place.x) - 0.5f;
-            samples->y[j] = place.y - std::floor(place.y) - 0.5f;
-        }
-    });
+                 for (int j = group.first; j < group.last; ++j) {
+                     const glm::vec3 middle = at(samples->middle, j);
+                     const glm::vec3 P = x * middle.x + y * middle.y + z * middle.z + shift;
+                     const glm::vec3 place = pose.project(P, width, height);
+                     samples->x[j] = place.x - std::floor(place.x) - 0.5f;
+                     samples->y[j] = place.y - std::floor(place.y) - 0.5f;
+                 }
+             });
 }
 
 /// The records of new hits, but for their light.

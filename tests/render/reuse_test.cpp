@@ -593,6 +593,16 @@ TEST_P(ReuseOfWhatMoves, IsAnotherSamplePatternOfWhatBends) {
     });
 }
 
+/// Away from the eye points come to lie two and three in a rectangle, and are averaged.
+TEST_P(ReuseOfWhatMoves, IsAnotherSamplePatternOfWhatGoesAway) {
+    Scene scene = room();
+    scene.objects[0] = object("ball", sphere(1.0f, 16), "plastic", {{"roughness", {0.05f}}});
+    expect_another_pattern(scene, GetParam(), [](Scene& s, int frame) {
+        s.nodes[1].translation.z = 4.0 + 0.12 * frame;
+        s.nodes[0].rotation = glm::angleAxis(0.03f * float(frame), glm::vec3(0.6f, 0.8f, 0.0f));
+    });
+}
+
 INSTANTIATE_TEST_SUITE_P(Samples, ReuseOfWhatMoves, testing::Values(1, 4, 16));
 
 }  // namespace
