@@ -16,7 +16,7 @@ namespace {
 
 std::string file_digest(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(fmt::format("{}: cannot be read", path));
+    if (!file) throw Error(fmt::format("{}: no such file", path));
     const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
                                                                          &XXH3_freeState);
     XXH3_64bits_reset(state.get());
