@@ -72,8 +72,7 @@ inline std::string done_in(const TemporaryFolder& folder, const std::string& lin
 /// Path of a mesh; the test fails if the folder of the meshes is not there.
 inline std::string model(const std::string& name) {
     const std::string path = std::string(ESTARA_MODELS) + "/" + name;
-    EXPECT_TRUE(std::filesystem::exists(path))
-        << path << " is missing; the build makes it";
+    EXPECT_TRUE(std::filesystem::exists(path)) << path << " is missing; the build makes it";
     return path;
 }
 

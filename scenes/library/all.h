@@ -6,8 +6,9 @@
 
 #include "glb.h"
 
-#define ESTARA_EXAMPLES(scene) \
-    scene(still_life) scene(tumble) scene(bend) scene(simple) scene(face) scene(face_b) scene(interior)
+#define ESTARA_EXAMPLES(scene)                                                          \
+    scene(still_life) scene(tumble) scene(bend) scene(simple) scene(face) scene(face_b) \
+        scene(interior)
 
 namespace estara::examples {
 

@@ -522,9 +522,8 @@ TEST(Examples, AreWholeOrNotThereWhenTheDiskIsFull) {
     // A limit on the size of files stands for the disk: the write fails half way.
     const Folder folder;
     const std::string path = folder / "x.glb";
-    const std::string limited = "ulimit -f 100; " ESTARA_BIN
-                                "/estara-scenes tumble -o " +
-                                path + " 2> " + (folder / "said");
+    const std::string limited = "ulimit -f 100; " ESTARA_BIN "/estara-scenes tumble -o " + path +
+                                " 2> " + (folder / "said");
     const int status = std::system(("sh -c \"" + limited + "\"").c_str());
     EXPECT_EQ(WEXITSTATUS(status), 1);
     EXPECT_EQ(text_of(folder / "said"),

@@ -22,16 +22,16 @@ struct Options {
     std::optional<double> max_error;   ///< bound on RMSE; none: no bound
     std::optional<FrameRange> frames;  ///< none: the scene's animation
     std::optional<double> fps;         ///< none: the scene's, or 24
-    glm::ivec2 resolution{640, 360};  ///< of the images that the voxel size is chosen for
-    std::string camera;               ///< "": the first one
-    std::uint64_t max_memory = 0;     ///< bytes; 0: half of the machine's
+    glm::ivec2 resolution{640, 360};   ///< of the images that the voxel size is chosen for
+    std::string camera;                ///< "": the first one
+    std::uint64_t max_memory = 0;      ///< bytes; 0: half of the machine's
     VdbWriteOptions file;
     bool irradiance = false;                      ///< bake the light too
     double irradiance_error = 0.01;               ///< bound on a lookup of it
     std::optional<double> irradiance_voxel_size;  ///< object space; none: found
     bool dry_run = false;
-    std::string stats;  ///< file name; "": none
-    int threads = 0;    ///< 0: one a core
+    std::string stats;   ///< file name; "": none
+    int threads = 0;     ///< 0: one a core
     bool quiet = false;  ///< no warnings, no progress, no results of bakes
     ProgressStyle progress = ProgressStyle::automatic;
     std::uint64_t seed = 0;  ///< of the points where the error is measured

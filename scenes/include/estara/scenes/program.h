@@ -68,10 +68,10 @@ private:
 };
 
 /// Where a file is written before it is whole: beside the final name, same ending
-/// (".name.MACHINE-RANDOM.tmp.exr"). Moved into place by commit(); removed by the destructor otherwise, so
-/// that nothing half-written is ever seen under the final name. Removed too if the program is
-/// interrupted (SIGINT, SIGTERM, SIGHUP); what killed programs have left is removed by the next one
-/// on the same machine that writes to the folder.
+/// (".name.MACHINE-RANDOM.tmp.exr"). Moved into place by commit(); removed by the destructor
+/// otherwise, so that nothing half-written is ever seen under the final name. Removed too if the
+/// program is interrupted (SIGINT, SIGTERM, SIGHUP); what killed programs have left is removed by
+/// the next one on the same machine that writes to the folder.
 class PendingFile {
 public:
     /// Creates missing parent folders. Error (bad_input) if the folder cannot be made or written

@@ -119,10 +119,10 @@ std::vector<float> smallest_footprints(const Scene& scene, RayScene& rays, int c
                                        const FrameRange& frames, double fps, int width, int height);
 
 /// The voxel size of each object if the user gives none, object space, > 0: half its smallest
-/// footprint over the frames (256 of them, evenly spread, if there are more), so that the blur of a lookup stays below the pixel; 1/512 of its
-/// diagonal if no pixel sees it. Between 1/32 and 1/16384 of the diagonal, and no smaller than
-/// finest_voxel_size(). Also the filter width of direct evaluation, so that both have the same
-/// octaves.
+/// footprint over the frames (256 of them, evenly spread, if there are more), so that the blur of a
+/// lookup stays below the pixel; 1/512 of its diagonal if no pixel sees it. Between 1/32 and
+/// 1/16384 of the diagonal, and no smaller than finest_voxel_size(). Also the filter width of
+/// direct evaluation, so that both have the same octaves.
 std::vector<double> automatic_voxel_sizes(const Scene& scene, RayScene& rays, int camera,
                                           const FrameRange& frames, double fps, int width,
                                           int height);

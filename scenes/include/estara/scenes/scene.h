@@ -91,7 +91,8 @@ struct SceneLight {
 struct FrameRange {
     int first = 1, last = 1;  ///< inclusive
     int step = 1;
-    std::vector<int> list{};  ///< ascending, from first to last; empty: each step from one to the other
+    std::vector<int>
+        list{};  ///< ascending, from first to last; empty: each step from one to the other
     int count() const noexcept {
         return list.empty() ? (last - first) / step + 1 : int(list.size());
     }
